@@ -1,0 +1,12 @@
+# Finds LCM: its own CMake package where there is one (1.5), pkg-config otherwise (Debian's 1.3.1).
+find_package(lcm CONFIG QUIET)
+if(TARGET lcm::lcm)
+    add_library(grrl_lcm_transport INTERFACE)
+    target_link_libraries(grrl_lcm_transport INTERFACE lcm::lcm)
+else()
+    find_package(PkgConfig REQUIRED)
+    pkg_check_modules(LCM REQUIRED IMPORTED_TARGET lcm)
+    add_library(grrl_lcm_transport INTERFACE)
+    target_link_libraries(grrl_lcm_transport INTERFACE PkgConfig::LCM)
+endif()
+find_program(LCM_GEN lcm-gen REQUIRED)

@@ -1,0 +1,14 @@
+# Warnings and floating-point rules for every target of ours: call grrl_configure(<target>).
+# -ffp-contract=off: the same seeds must give the same run on every machine.
+function(grrl_configure target)
+    set(common -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Wundef -Wcast-qual
+        -Wdouble-promotion)
+    target_compile_options(${target} PRIVATE ${common} -ffp-contract=off
+        $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes -Wstrict-prototypes>
+        $<$<BOOL:${GRRL_WERROR}>:-Werror>)
+    if(GRRL_SANITIZE)
+        target_compile_options(${target} PRIVATE -fsanitize=address,undefined
+            -fno-sanitize-recover=all -fno-omit-frame-pointer)
+        target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+    endif()
+endfunction()

@@ -1,0 +1,30 @@
+/*
+ * random.h: the random numbers of the library, a small state the caller owns.
+ *
+ * PCG32 (O'Neill, 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
+ * for Random Number Generation"). The same seed and stream give the same numbers on every machine.
+ */
+#ifndef GRRL_RANDOM_H
+#define GRRL_RANDOM_H
+
+#include <stdint.h>
+
+struct grrl_random {
+    /* private */
+    uint64_t state;
+    uint64_t increment;
+};
+
+/* Streams with the same seed are independent of one another. */
+void grrl_random_init(struct grrl_random *random, uint64_t seed, uint64_t stream);
+
+/* Uniform over all 32-bit values. */
+uint32_t grrl_random_next(struct grrl_random *random);
+
+/* Uniform over 0 .. count - 1, without bias; count >= 1. */
+uint32_t grrl_random_below(struct grrl_random *random, uint32_t count);
+
+/* Uniform in [0, 1). */
+float grrl_random_uniform(struct grrl_random *random);
+
+#endif
