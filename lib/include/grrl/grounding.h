@@ -1,0 +1,64 @@
+/*
+ * grounding.h: relational actions and pushes in metres and newtons (paper, sections III and VI).
+ *
+ * A link's principal axis has no sign and a plane can be mirrored; so that a stored action does the
+ * same thing on another object, both are grounded in the structure: the axis points away from the
+ * neighbours the link hangs on, the left-hand side is the side where the rest of the object lies.
+ */
+#ifndef GRRL_GROUNDING_H
+#define GRRL_GROUNDING_H
+
+#include "grrl/perception.h"
+
+/* Fill with grrl_grounding_config_default, then change what differs. */
+struct grrl_grounding_config {
+    float finger_radius_m; /* of the pushing tool; 0.01 */
+    float clearance_m;     /* from the tool's edge to the nearest feature at the start; 0.015 */
+    float travel_m;        /* how far to push after the first contact; 0.03 */
+    float speed_m_s;       /* 0.08 */
+    float force_n;         /* limit; 10 */
+    float timeout_s;       /* 2.5 */
+};
+
+/* The frame of directions of a link: right-handed or mirrored, both unit vectors. */
+struct grrl_link_frame {
+    struct grrl_vec2 forward; /* 0 degrees */
+    struct grrl_vec2 side;    /* 90 degrees */
+};
+
+/* A push as a robot takes it: come down at start, move towards end, stop `travel_m` after the first
+ * contact, at the end of the line, or after the timeout. World frame, metres. */
+struct grrl_push {
+    struct grrl_vec2 start_m;
+    struct grrl_vec2 end_m;
+    float travel_m;
+    float speed_m_s;
+    float force_n;
+    float timeout_s;
+};
+
+void grrl_grounding_config_default(struct grrl_grounding_config *config);
+
+/* GRRL_ERR_ARGUMENT for a configuration that is not finite or not positive. */
+GRRL_MUST_USE enum grrl_status
+grrl_grounding_config_check(const struct grrl_grounding_config *config);
+
+/*
+ * The frame of directions of body `body`: forward points away from the body's joined neighbours
+ * (from the centroid of the structure on its heavier side; without neighbours along the axis as it
+ * is), side points towards the centroid of the rest of its object.
+ */
+GRRL_MUST_USE enum grrl_status grrl_grounding_frame(const struct grrl_model *model, uint8_t body,
+                                                    struct grrl_link_frame *frame);
+
+/*
+ * The push that an action (a body's index, an index into grrl_direction_deg) means: through the
+ * centroid, from the far side of the point cloud, starting where no feature of any body is in the
+ * tool's way. GRRL_ERR_ARGUMENT.
+ */
+GRRL_MUST_USE enum grrl_status grrl_grounding_push(const struct grrl_model *model,
+                                                   const struct grrl_grounding_config *config,
+                                                   uint8_t body, uint8_t direction,
+                                                   struct grrl_push *push);
+
+#endif
