@@ -23,8 +23,9 @@ struct grrl_pose {
     float s;
 };
 
-/* Absolute errors below 3e-7 for |angle| <= 100 rad, 4e-7 rad for atan2, relative 1e-6 for exp and
- * log. exp saturates at 0 and at FLT_MAX; log wants x > 0; atan2 of two zeros is 0. */
+/* Absolute errors below 3e-7 for |angle| <= 100 rad (NaN beyond 8192 rad), 4e-7 rad for atan2,
+ * relative 1e-6 for exp and log. exp saturates at 0 (below FLT_MIN) and at FLT_MAX; log of zero or
+ * less is -FLT_MAX; atan2 of two zeros is 0. */
 float grrl_sin(float angle_rad);
 float grrl_cos(float angle_rad);
 float grrl_atan2(float y, float x);
@@ -46,12 +47,13 @@ struct grrl_vec2 grrl_unrotate(struct grrl_pose pose, struct grrl_vec2 world);
 struct grrl_vec2 grrl_transform(struct grrl_pose pose, struct grrl_vec2 local);
 struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world);
 
-/* The angle brought into (-pi, pi]. */
+/* The angle brought into (-pi, pi]; NaN beyond 8192 rad. */
 float grrl_wrap_rad(float angle_rad);
 
 /*
  * The principal axes of a symmetric 2 x 2 matrix (xx, xy; xy, yy): *major >= *minor are its
- * eigenvalues, the unit vector *axis belongs to *major and has axis.x > 0, or axis = (0, 1).
+ * eigenvalues, the unit vector *axis belongs to *major and has axis.x > 0, or axis = (0, 1). With
+ * equal eigenvalues, or numbers too large or too small to tell, it is (1, 0).
  */
 void grrl_principal_axes(float xx, float xy, float yy, float *major, float *minor,
                          struct grrl_vec2 *axis);
