@@ -53,6 +53,7 @@ static_assert(GRRL_MAX_JOINTS >= GRRL_MAX_LINKS - 1, "a tree must fit");
 static_assert(GRRL_MAX_FEATURES >= 8 && GRRL_MAX_FEATURES <= 1024, "feature slots");
 static_assert(GRRL_MAX_KEYFRAMES >= 8 && GRRL_MAX_KEYFRAMES <= 255, "keyframe slots");
 static_assert(GRRL_MAX_PROPERTIES >= 1 && GRRL_MAX_PROPERTIES <= 8, "bytes of a 64-bit label");
+static_assert(GRRL_MAX_TERM_DEPTH >= 2 && GRRL_MAX_TERM_DEPTH <= 127, "depths are bytes");
 static_assert(GRRL_MAX_SYMBOLS >= 8 && GRRL_MAX_SYMBOLS <= 127, "symbols are 7-bit ids");
 
 #endif
