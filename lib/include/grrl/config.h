@@ -51,6 +51,7 @@ _Static_assert(GRRL_MAX_JOINTS >= GRRL_MAX_LINKS - 1, "a tree must fit");
 _Static_assert(GRRL_MAX_FEATURES >= 8 && GRRL_MAX_FEATURES <= 1024, "feature slots");
 _Static_assert(GRRL_MAX_KEYFRAMES >= 8 && GRRL_MAX_KEYFRAMES <= 255, "keyframe slots");
 _Static_assert(GRRL_MAX_PROPERTIES >= 1 && GRRL_MAX_PROPERTIES <= 8, "bytes of a 64-bit label");
+_Static_assert(GRRL_MAX_TERM_DEPTH >= 2 && GRRL_MAX_TERM_DEPTH <= 127, "depths are bytes");
 _Static_assert(GRRL_MAX_SYMBOLS >= 8 && GRRL_MAX_SYMBOLS <= 127, "symbols are 7-bit ids");
 
 #endif

@@ -22,9 +22,21 @@ enum { GRRL_NO_JOINT = -1 };
 /* The properties of a link: byte i is the property at place i, 0 where there is none. */
 typedef uint64_t grrl_label;
 
+/*
+ * The label of the background where a joint makes it a vertex. No link has it (its bytes would be
+ * variables), and no mask changes it: the background only ever matches the background.
+ */
+#define GRRL_LABEL_BACKGROUND UINT64_MAX
+
 /* Masks over the bytes of a label: which properties count in a comparison. */
 #define GRRL_ALL_PROPERTIES UINT64_MAX
 #define GRRL_NO_PROPERTIES UINT64_C(0)
+
+/* What of a label counts in a comparison: equal results, equal labels under the mask. */
+static inline grrl_label grrl_label_masked(grrl_label label, grrl_label mask)
+{
+    return label == GRRL_LABEL_BACKGROUND ? label : label & mask;
+}
 
 struct grrl_graph {
     uint8_t n;                                         /* links */
@@ -41,7 +53,7 @@ struct grrl_edge {
 
 void grrl_graph_clear(struct grrl_graph *graph);
 
-/* GRRL_ERR_FULL at GRRL_MAX_LINKS. */
+/* GRRL_ERR_FULL at GRRL_MAX_LINKS. index may be NULL. */
 GRRL_MUST_USE enum grrl_status grrl_graph_add_link(struct grrl_graph *graph, grrl_label label,
                                                    uint8_t *index);
 
@@ -69,11 +81,13 @@ uint32_t grrl_graph_component(const struct grrl_graph *graph, uint8_t link);
 
 /*
  * The structure a term describes. names[i] (GRRL_MAX_LINKS of them) is who vertex i is, in order of
- * first appearance. A link may be written more than once, in full or by its bare name.
+ * first appearance (the background: of its first joint). A link may be written more than once, in
+ * full or by its bare name.
  * edges (may be NULL; GRRL_MAX_JOINTS of them, *n_edges filled) are its joints, the most deeply
  * nested first: the order of discovery. GRRL_ERR_FULL; GRRL_ERR_STRUCTURE: an action, a property
- * variable, a link joined to itself or twice to another, two sets of properties for one name. On
- * failure *error, if not NULL, carries a message.
+ * variable, a link joined to itself or twice to another, two sets of properties for one name, a
+ * background with properties. On failure the graph and names are of no use and *error, if not NULL,
+ * carries a message; a term has no position, so line and column are 0.
  */
 GRRL_MUST_USE enum grrl_status grrl_graph_from_term(const struct grrl_term_store *store,
                                                     grrl_term term, struct grrl_graph *graph,
@@ -84,7 +98,10 @@ GRRL_MUST_USE enum grrl_status grrl_graph_from_term(const struct grrl_term_store
 /*
  * A term that describes the graph; round trip for every structure. edges gives the joints in order
  * of discovery, so that the first discovered is the most deeply nested (n_edges of them, each joint
- * of the graph once; NULL: any order). with_background writes D(lb, ..) around it.
+ * of the graph once; NULL: any order). with_background writes D(lb, ..) around it, unless a joint
+ * makes the background a link of its own; a graph without links is `lb`. The names must differ.
+ * At most 2 n + 4 joints + 2 nodes. GRRL_ERR_FULL; GRRL_ERR_ARGUMENT: names or edges that do not
+ * fit the graph, a background without a joint, a property the store does not know.
  */
 GRRL_MUST_USE enum grrl_status grrl_graph_to_term(struct grrl_term_store *store,
                                                   const struct grrl_graph *graph,

@@ -1,12 +1,16 @@
 /*
  * term.h: relational terms in fixed memory (paper, section III).
  *
- *   link      L(p1, .., pk, name), k >= 0, or a bare name
- *   name      f3 (a grounding set of features), v3 (a variable), l3 (a link by name), lb
- * (background) property  an atom such as s (small) or l (large), or a variable v3; its place is its
- * meaning: the first property is the size relation  R(x, y, ..) revolute, P(x, y, ..) prismatic,
- * D(x, y, ..) disconnected, n >= 2; R(x, y, z) means R(x, y) & R(x, z) and       x & y & .. action
- * A(link, direction), the direction one of 0, 45, 90, 180, 225, 270 degrees
+ *   link       L(p1, .., pk, name), k >= 0, or a bare name
+ *   name       f3 (a grounding set of features), v3 (a variable), l3 (a link by name), lb
+ *              (background)
+ *   property   an atom such as s (small) or l (large), a variable v3, or _ for none; its place is
+ *              its meaning: the first property is the size
+ *   relation   R(x, y, ..) revolute, P(x, y, ..) prismatic, D(x, y, ..) disconnected, n >= 2;
+ *              R(x, y, z) means R(x, y) & R(x, z)
+ *   and        x & y & ..
+ *   action     A(link, direction), the direction one of 0, 45, 90, 180, 225, 270 degrees; it
+ *              stands alone
  *
  * A joint connects the link written last in its first argument with the link written first in each
  * further argument. graph.h turns a term into the graph this describes, and back.
@@ -63,6 +67,7 @@ struct grrl_term_node {
     uint8_t kind; /* enum grrl_term_kind */
     uint8_t n_properties;
     uint8_t direction; /* of an action: an index into grrl_direction_deg */
+    uint8_t depth;     /* relations nested in this term, itself included */
     grrl_property properties[GRRL_MAX_PROPERTIES];
     struct grrl_name name;
     grrl_term first_argument;
@@ -120,13 +125,18 @@ GRRL_MUST_USE enum grrl_status grrl_term_intern(struct grrl_term_store *store, c
 /* The text of an atom, NULL for none or a variable. */
 const char *grrl_term_symbol(const struct grrl_term_store *store, grrl_property property);
 
+/* properties may be NULL when n is 0; "none" at the last places is left away. */
 GRRL_MUST_USE enum grrl_status grrl_term_make_link(struct grrl_term_store *store,
                                                    struct grrl_name name,
                                                    const grrl_property *properties, uint8_t n,
                                                    grrl_term *term);
 
-/* A relation or conjunction over n >= 2 argument terms, which become its own: a node has one
- * parent, so that an argument used twice must be made twice (or copied by substitution). */
+/*
+ * A relation or conjunction over n >= 2 argument terms, which become its own: a node has one
+ * parent, so that an argument used twice must be made twice (or copied by substitution). The parts
+ * of a conjunction within a conjunction become parts of the outer one. GRRL_ERR_ARGUMENT for an
+ * action as an argument; GRRL_ERR_FULL, also beyond GRRL_MAX_TERM_DEPTH.
+ */
 GRRL_MUST_USE enum grrl_status grrl_term_make(struct grrl_term_store *store,
                                               enum grrl_term_kind kind, const grrl_term *arguments,
                                               uint16_t n, grrl_term *term);
@@ -146,7 +156,8 @@ GRRL_MUST_USE enum grrl_status grrl_term_parse(struct grrl_term_store *store, co
 
 /*
  * Writes the term with its terminating zero. *length becomes the bytes the whole text takes without
- * the zero, also when `capacity` is too small (GRRL_ERR_FULL, the text is cut).
+ * the zero, also when `capacity` is too small (GRRL_ERR_FULL, the text is cut). capacity >= 1;
+ * length may be NULL.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_print(const struct grrl_term_store *store, grrl_term term,
                                                size_t capacity, char *text, size_t *length);

@@ -1,0 +1,45 @@
+/*
+ * bits.h (private): sets of links as the bits of a 32-bit mask.
+ */
+#ifndef GRRL_BITS_H
+#define GRRL_BITS_H
+
+#include <stdint.h>
+
+static inline uint32_t grrl_bit(unsigned i)
+{
+    return UINT32_C(1) << i;
+}
+
+/* The set 0 .. n - 1, n <= 32. */
+static inline uint32_t grrl_bits_below(unsigned n)
+{
+    return n >= 32 ? UINT32_MAX : grrl_bit(n) - 1u;
+}
+
+/* The smallest element of a set that is not empty. */
+static inline uint8_t grrl_first_bit(uint32_t set)
+{
+#if defined(__GNUC__)
+    return (uint8_t)__builtin_ctz(set);
+#else
+    uint8_t i = 0;
+    while ((set >> i & 1u) == 0)
+        i++;
+    return i;
+#endif
+}
+
+static inline unsigned grrl_bit_count(uint32_t set)
+{
+#if defined(__GNUC__)
+    return (unsigned)__builtin_popcount(set);
+#else
+    unsigned n = 0;
+    for (; set != 0; set &= set - 1u)
+        n++;
+    return n;
+#endif
+}
+
+#endif

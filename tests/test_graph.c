@@ -1,0 +1,409 @@
+#include "support.h"
+
+enum { N_NODES = 12 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS };
+
+struct fixture {
+    struct grrl_term_node nodes[N_NODES];
+    struct grrl_term_store store;
+};
+
+static int setup(void **state)
+{
+    static struct fixture fixture;
+    grrl_term_store_init(&fixture.store, fixture.nodes, N_NODES);
+    *state = &fixture;
+    return 0;
+}
+
+static struct grrl_term_store *store_of(void **state)
+{
+    return &((struct fixture *)*state)->store;
+}
+
+struct structure {
+    struct grrl_graph graph;
+    struct grrl_name names[GRRL_MAX_LINKS];
+    struct grrl_edge edges[GRRL_MAX_JOINTS];
+    uint8_t n_edges;
+};
+
+static struct structure read_structure(struct grrl_term_store *store, grrl_term term)
+{
+    struct structure s;
+    struct grrl_term_error error;
+    if (grrl_graph_from_term(store, term, &s.graph, s.names, s.edges, &s.n_edges, &error) !=
+        GRRL_OK)
+        fail_msg("%s", error.message);
+    return s;
+}
+
+static uint8_t vertex_of(const struct structure *s, struct grrl_name name)
+{
+    for (uint8_t i = 0; i < s->graph.n; i++)
+        if (s->names[i].kind == name.kind && s->names[i].number == name.number)
+            return i;
+    fail_msg("no link %u:%u", name.kind, name.number);
+    return 0;
+}
+
+/* The same links by name, with the same labels and joints. */
+static void assert_same(const struct structure *a, const struct structure *b)
+{
+    assert_int_equal(a->graph.n, b->graph.n);
+    uint8_t order[GRRL_MAX_LINKS];
+    for (uint8_t i = 0; i < a->graph.n; i++)
+        order[i] = vertex_of(b, a->names[i]);
+    struct grrl_graph permuted;
+    grrl_graph_permute(&b->graph, order, &permuted);
+    assert_true(grrl_graph_equal(&a->graph, &permuted, GRRL_ALL_PROPERTIES));
+}
+
+/* Texts that describe one structure, up to the names being the same. */
+static void test_equivalent_terms(void **state)
+{
+    static const char *const cases[][2] = {
+        {"D(lb, R(l1, l2))", "R(l2, l1)"},
+        {"D(lb, R(l4, R(l3, P(l1, l2))))", "R(l4, l3) & R(l3, l1) & P(l1, l2)"},
+        {"D(P(l4, R(R(l1, l2), l3)), lb)", "P(l4, l1) & R(l1, l2) & R(l2, l3)"},
+        {"D(P(l4, R(R(l1, l2), l3)), lb)", "R(l3, R(l2, P(l1, l4)))"},
+        {"D(lb, R(l1, R(l5, R(l4, R(l3, R(l2, l1))))))",
+         "R(l1, l2) & R(l2, l3) & R(l3, l4) & R(l4, l5) & R(l5, l1)"},
+        {"R(R(L(l, f1), L(s, f2)), L(l, f3))", "R(L(l, f3), R(L(s, f2), L(l, f1)))"},
+        {"R(l1, l2, l3)", "R(l1, l2) & R(l1, l3)"},
+        {"R(P(l1, l2), P(l3, l4), l5)", "P(l1, l2) & P(l3, l4) & R(l2, l3) & R(l2, l5)"},
+        {"R(l1 & l2, l3 & l4)", "D(R(l2, l3), l1, l4)"},
+        {"R(l1, L(s, red, l2)) & L(l, l1)", "R(L(l, l1), l2) & L(s, red, l2) & l2"},
+        {"L(_, red, l1) & lb", "D(lb, L(_, red, l1))"},
+        {"R(lb, l1)", "D(lb, R(l1, lb))"},
+    };
+    struct grrl_term_store *store = store_of(state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct structure a = read_structure(store, support_parse(store, cases[i][0]));
+        struct structure b = read_structure(store, support_parse(store, cases[i][1]));
+        assert_same(&a, &b);
+        grrl_term_release(store, 1);
+    }
+}
+
+static void test_contents(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct structure s = read_structure(
+        store, support_parse(store, "D(lb, R(L(s, l4), R(L(l, wet, l3), P(l1, l2))))"));
+    assert_int_equal(s.graph.n, 4);
+    assert_int_equal(s.names[0].number, 4);
+    assert_int_equal(s.graph.label[0], GRRL_PROPERTY_SMALL);
+    assert_int_equal(s.graph.label[1], GRRL_PROPERTY_LARGE | 3u << 8);
+    assert_int_equal(s.graph.label[2], 0);
+    assert_int_equal(s.n_edges, 3);
+    const struct grrl_edge expected[3] = {
+        {2, 3, GRRL_PRISMATIC}, {1, 2, GRRL_REVOLUTE}, {0, 1, GRRL_REVOLUTE}};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(s.edges[i].a, expected[i].a);
+        assert_int_equal(s.edges[i].b, expected[i].b);
+        assert_int_equal(s.edges[i].type, expected[i].type);
+    }
+    struct structure background = read_structure(store, support_parse(store, "P(l1, lb)"));
+    assert_int_equal(background.graph.n, 2);
+    assert_int_equal(background.names[1].kind, GRRL_NAME_BACKGROUND);
+    assert_true(background.graph.label[1] == GRRL_LABEL_BACKGROUND);
+    assert_int_equal(read_structure(store, support_parse(store, "lb")).graph.n, 0);
+}
+
+static void test_rejected_terms(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *message;
+    } cases[] = {
+        {"A(l1, 45)", "an action is no structure"},
+        {"L(v1, l1)", "link l1 has a variable for a property"},
+        {"R(l1, l1)", "link l1 is joined to itself"},
+        {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
+        {"R(l1, R(l1, l2))", "link l1 is joined to itself"},
+        {"R(l1, l2) & P(l2, l1)", "link l2 is joined twice to l1"},
+        {"R(l1, l2, l2)", "link l1 is joined twice to l2"},
+        {"R(L(s, l1), l2) & L(l, l1)", "link l1 is given two sets of properties"},
+        {"R(L(s, lb), l2)", "link lb is the background"},
+        {"P(lb, lb)", "link lb is joined to itself"},
+    };
+    struct grrl_term_store *store = store_of(state);
+    struct structure s;
+    struct grrl_term_error error;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        grrl_term term = support_parse(store, cases[i].text);
+        enum grrl_status status =
+            grrl_graph_from_term(store, term, &s.graph, s.names, NULL, NULL, &error);
+        assert_int_equal(status, GRRL_ERR_STRUCTURE);
+        assert_non_null(strstr(error.message, cases[i].message));
+        assert_int_equal(error.line, 0);
+        assert_int_equal(grrl_graph_from_term(store, term, &s.graph, s.names, NULL, NULL, NULL),
+                         status);
+    }
+    assert_int_equal(grrl_graph_from_term(store, 0, &s.graph, s.names, NULL, NULL, &error),
+                     GRRL_ERR_ARGUMENT);
+}
+
+static void test_full(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_graph graph;
+    grrl_graph_clear(&graph);
+    for (int i = 0; i < GRRL_MAX_LINKS; i++)
+        assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
+    assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_ERR_FULL);
+    unsigned n_joints = 0;
+    enum grrl_status status = GRRL_OK;
+    for (uint8_t b = 0; b < GRRL_MAX_LINKS && status == GRRL_OK; b++) {
+        for (uint8_t a = 0; a < b && status == GRRL_OK; a++) {
+            status = grrl_graph_add_joint(&graph, a, b, GRRL_REVOLUTE);
+            n_joints += status == GRRL_OK;
+        }
+    }
+    assert_int_equal(status, GRRL_ERR_FULL);
+    assert_int_equal(n_joints, GRRL_MAX_JOINTS);
+    assert_int_equal(grrl_graph_joint_count(&graph), GRRL_MAX_JOINTS);
+
+    grrl_term links[GRRL_MAX_LINKS + 1];
+    for (uint16_t i = 0; i <= GRRL_MAX_LINKS; i++) {
+        struct grrl_name name = {GRRL_NAME_FEATURES, i};
+        assert_int_equal(grrl_term_make_link(store, name, NULL, 0, &links[i]), GRRL_OK);
+    }
+    grrl_term all;
+    assert_int_equal(grrl_term_make(store, GRRL_TERM_AND, links, GRRL_MAX_LINKS + 1, &all),
+                     GRRL_OK);
+    struct structure s;
+    struct grrl_term_error error;
+    assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
+                     GRRL_ERR_FULL);
+    assert_non_null(strstr(error.message, "one more than a structure can have"));
+}
+
+static void test_joints(void **state)
+{
+    (void)state;
+    struct grrl_graph graph;
+    grrl_graph_clear(&graph);
+    for (int i = 0; i < 5 && i < GRRL_MAX_LINKS; i++)
+        assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
+    assert_int_equal(grrl_graph_add_joint(&graph, 0, 1, GRRL_REVOLUTE), GRRL_OK);
+    assert_int_equal(grrl_graph_add_joint(&graph, 3, 1, GRRL_PRISMATIC), GRRL_OK);
+    assert_int_equal(grrl_graph_add_joint(&graph, 1, 3, GRRL_REVOLUTE), GRRL_ERR_STRUCTURE);
+    assert_int_equal(grrl_graph_add_joint(&graph, 2, 2, GRRL_REVOLUTE), GRRL_ERR_STRUCTURE);
+    assert_int_equal(grrl_graph_add_joint(&graph, 2, 5, GRRL_REVOLUTE), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_graph_joint(&graph, 1, 0), GRRL_REVOLUTE);
+    assert_int_equal(grrl_graph_joint(&graph, 1, 3), GRRL_PRISMATIC);
+    assert_int_equal(grrl_graph_joint(&graph, 0, 3), GRRL_NO_JOINT);
+    assert_int_equal(grrl_graph_neighbours(&graph, 1), 1u << 0 | 1u << 3);
+    assert_int_equal(grrl_graph_component(&graph, 3), 1u << 0 | 1u << 1 | 1u << 3);
+    assert_int_equal(grrl_graph_component(&graph, 4), 1u << 4);
+    struct grrl_graph relabelled = graph;
+    relabelled.label[2] = GRRL_PROPERTY_SMALL;
+    assert_false(grrl_graph_equal(&graph, &relabelled, GRRL_ALL_PROPERTIES));
+    assert_true(grrl_graph_equal(&graph, &relabelled, 0xff00));
+    relabelled.label[2] = GRRL_LABEL_BACKGROUND;
+    assert_false(grrl_graph_equal(&graph, &relabelled, GRRL_NO_PROPERTIES));
+}
+
+/* Joints as (link number, link number, type) in order of discovery, and the term they give. */
+static void test_order_of_discovery(void **state)
+{
+    static const struct {
+        uint8_t joints[8][3];
+        uint8_t n_joints;
+        uint8_t n_links;
+        bool with_background;
+        const char *expected;
+    } cases[] = {
+        {{{1, 2, 1}, {3, 1, 0}, {4, 3, 0}}, 3, 4, true, "D(lb, R(l4, R(l3, P(l1, l2))))"},
+        {{{2, 1, 0}, {3, 2, 0}, {4, 3, 0}, {5, 4, 0}, {1, 5, 0}},
+         5,
+         5,
+         false,
+         "R(l1, R(l5, R(l4, R(l3, R(l2, l1)))))"},
+        {{{2, 1, 0}, {3, 2, 0}, {4, 3, 0}, {5, 4, 0}, {5, 1, 0}},
+         5,
+         5,
+         true,
+         "D(lb, R(l1, R(l5, R(l4, R(l3, R(l2, l1))))))"},
+        {{{1, 2, 0}, {2, 3, 0}}, 2, 3, false, "R(R(l1, l2), l3)"},
+        {{{1, 2, 0}, {1, 3, 0}}, 2, 3, false, "R(l3, R(l1, l2))"},
+        {{{1, 2, 0}, {3, 4, 1}, {2, 3, 0}}, 3, 4, false, "R(R(l1, l2), P(l3, l4))"},
+        {{{1, 2, 0}, {3, 4, 1}, {4, 1, 0}}, 3, 4, false, "R(P(l3, l4), R(l1, l2))"},
+        {{{1, 2, 0}, {3, 4, 1}, {1, 3, 0}}, 3, 4, false, "R(l1, l2) & P(l3, l4) & R(l1, l3)"},
+        {{{1, 2, 0}, {2, 3, 0}, {2, 4, 1}}, 3, 4, false, "R(R(l1, l2), l3) & P(l2, l4)"},
+        {{{1, 2, 0}, {2, 3, 0}, {3, 1, 0}}, 3, 3, false, "R(l3, R(R(l1, l2), l3))"},
+        {{{1, 2, 0}}, 1, 4, true, "D(lb, R(l1, l2), l3, l4)"},
+        {{{4, 3, 0}, {1, 2, 0}}, 2, 4, false, "D(R(l1, l2), R(l4, l3))"},
+        {{{0}}, 0, 1, false, "l1"},
+        {{{0}}, 0, 0, false, "lb"},
+        {{{0}}, 0, 0, true, "lb"},
+    };
+    struct grrl_term_store *store = store_of(state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct grrl_graph graph;
+        struct grrl_name names[8];
+        struct grrl_edge edges[8];
+        grrl_graph_clear(&graph);
+        for (uint8_t k = 0; k < cases[i].n_links; k++) {
+            assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
+            names[k] = (struct grrl_name){GRRL_NAME_LINK, (uint16_t)(k + 1)};
+        }
+        for (uint8_t k = 0; k < cases[i].n_joints; k++) {
+            const uint8_t *joint = cases[i].joints[k];
+            edges[k] =
+                (struct grrl_edge){(uint8_t)(joint[0] - 1), (uint8_t)(joint[1] - 1), joint[2]};
+            assert_int_equal(grrl_graph_add_joint(&graph, edges[k].a, edges[k].b,
+                                                  (enum grrl_joint_type)edges[k].type),
+                             GRRL_OK);
+        }
+        grrl_term term;
+        assert_int_equal(grrl_graph_to_term(store, &graph, names, edges, cases[i].n_joints,
+                                            cases[i].with_background, &term),
+                         GRRL_OK);
+        support_assert_prints(store, term, cases[i].expected);
+        grrl_term_release(store, 1);
+    }
+}
+
+static void test_to_term_checks(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct structure s = read_structure(store, support_parse(store, "R(L(s, l1), P(l2, l3))"));
+    grrl_term_release(store, 1);
+    grrl_term term;
+    struct structure bad = s;
+    bad.edges[1] = bad.edges[0];
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, bad.edges, 2, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad = s;
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, bad.edges, 1, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad.edges[0].type ^= 1u;
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, bad.edges, 2, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad = s;
+    bad.names[1] = bad.names[0];
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad = s;
+    bad.names[0] = (struct grrl_name){GRRL_NAME_BACKGROUND, 0};
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad = s;
+    bad.graph.label[0] = 100;
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_mark(store), 1);
+
+    /* D(lb, R(P(l2, l3), l1)): seven nodes, and node 0 */
+    struct grrl_term_node nodes[8];
+    struct grrl_term_store small;
+    for (uint16_t capacity = 2; capacity <= 8; capacity++) {
+        grrl_term_store_init(&small, nodes, capacity);
+        enum grrl_status status =
+            grrl_graph_to_term(&small, &s.graph, s.names, s.edges, s.n_edges, true, &term);
+        assert_int_equal(status, capacity < 8 ? GRRL_ERR_FULL : GRRL_OK);
+        assert_int_equal(grrl_term_mark(&small), capacity < 8 ? 1 : 8);
+    }
+}
+
+/* Every structure survives being written as a term and read again, and its first joint is the most
+ * deeply nested one as long as the term has no conjunction. */
+static void test_random_round_trips(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_random random = support_random("round trips");
+    unsigned n_nested = 0;
+    for (int i = 0; i < 20000; i++) {
+        grrl_term_release(store, 1);
+        uint8_t n = (uint8_t)grrl_random_below(&random, GRRL_MAX_LINKS + 1);
+        struct structure s = {.n_edges = 0};
+        s.graph = support_graph(&random, n, 1 + grrl_random_below(&random, 8),
+                                n > 1 ? grrl_random_below(&random, GRRL_MAX_JOINTS - n) : 0, 2);
+        for (uint8_t k = 0; k < n; k++)
+            s.names[k] = (struct grrl_name){GRRL_NAME_FEATURES, (uint16_t)(100 + k)};
+        for (uint8_t b = 0; b < n; b++)
+            for (uint8_t a = 0; a < b; a++)
+                if (grrl_graph_joint(&s.graph, a, b) != GRRL_NO_JOINT)
+                    s.edges[s.n_edges++] =
+                        (struct grrl_edge){a, b, (uint8_t)grrl_graph_joint(&s.graph, a, b)};
+        uint8_t order[GRRL_MAX_JOINTS];
+        support_shuffle(&random, order, s.n_edges);
+        struct grrl_edge edges[GRRL_MAX_JOINTS];
+        for (uint8_t k = 0; k < s.n_edges; k++)
+            edges[k] = s.edges[order[k]];
+        if (n > 0 && grrl_random_below(&random, 4) == 0) {
+            uint8_t k = (uint8_t)grrl_random_below(&random, n);
+            if (grrl_graph_neighbours(&s.graph, k) != 0) {
+                s.graph.label[k] = GRRL_LABEL_BACKGROUND;
+                s.names[k] = (struct grrl_name){GRRL_NAME_BACKGROUND, 0};
+            }
+        }
+        grrl_term term;
+        assert_int_equal(grrl_graph_to_term(store, &s.graph, s.names,
+                                            grrl_random_below(&random, 8) ? edges : NULL, s.n_edges,
+                                            grrl_random_below(&random, 2), &term),
+                         GRRL_OK);
+        assert_true(grrl_term_mark(store) <= 2 * n + 4 * s.n_edges + 2 + 1);
+        struct structure again = read_structure(store, term);
+        assert_same(&s, &again);
+        static char text[32 * N_NODES];
+        assert_int_equal(grrl_term_print(store, term, sizeof text, text, NULL), GRRL_OK);
+        struct structure parsed = read_structure(store, support_parse(store, text));
+        assert_same(&s, &parsed);
+        n_nested += strchr(text, '&') == NULL && s.n_edges > 2;
+    }
+    assert_true(n_nested > 100);
+}
+
+/* A chain discovered from one end outwards gives its joints back in that order. */
+static void test_discovery_survives(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_random random = support_random("discovery");
+    for (int i = 0; i < 500; i++) {
+        grrl_term_release(store, 1);
+        struct structure s = {.n_edges = 0};
+        grrl_graph_clear(&s.graph);
+        uint8_t ends[2] = {0, 0};
+        uint8_t n = (uint8_t)(2 + grrl_random_below(&random, GRRL_MAX_LINKS - 1));
+        for (uint8_t k = 0; k < n; k++) {
+            assert_int_equal(grrl_graph_add_link(&s.graph, 0, NULL), GRRL_OK);
+            s.names[k] = (struct grrl_name){GRRL_NAME_LINK, k};
+            if (k == 0)
+                continue;
+            uint8_t *end = &ends[grrl_random_below(&random, 2)];
+            s.edges[s.n_edges++] = (struct grrl_edge){*end, k, GRRL_REVOLUTE};
+            assert_int_equal(grrl_graph_add_joint(&s.graph, *end, k, GRRL_REVOLUTE), GRRL_OK);
+            *end = k;
+        }
+        grrl_term term;
+        assert_int_equal(
+            grrl_graph_to_term(store, &s.graph, s.names, s.edges, s.n_edges, true, &term), GRRL_OK);
+        struct structure again = read_structure(store, term);
+        assert_int_equal(again.n_edges, s.n_edges);
+        for (uint8_t k = 0; k < s.n_edges; k++) {
+            uint16_t a = again.names[again.edges[k].a].number;
+            uint16_t b = again.names[again.edges[k].b].number;
+            assert_true((a == s.edges[k].a && b == s.edges[k].b) ||
+                        (a == s.edges[k].b && b == s.edges[k].a));
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_equivalent_terms, setup),
+        cmocka_unit_test_setup(test_contents, setup),
+        cmocka_unit_test_setup(test_rejected_terms, setup),
+        cmocka_unit_test_setup(test_full, setup),
+        cmocka_unit_test_setup(test_joints, setup),
+        cmocka_unit_test_setup(test_order_of_discovery, setup),
+        cmocka_unit_test_setup(test_to_term_checks, setup),
+        cmocka_unit_test_setup(test_random_round_trips, setup),
+        cmocka_unit_test_setup(test_discovery_survives, setup),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
