@@ -44,17 +44,20 @@ GRRL_MUST_USE enum grrl_status
 grrl_grounding_config_check(const struct grrl_grounding_config *config);
 
 /*
- * The frame of directions of body `body`: forward points away from the body's joined neighbours
- * (from the centroid of the structure on its heavier side; without neighbours along the axis as it
- * is), side points towards the centroid of the rest of its object.
+ * The frame of directions of body `body`. Forward lies along its principal axis and points away
+ * from its joined neighbours; with neighbours at both ends away from the heavier end (more links,
+ * then longer links, then the joint discovered first); without neighbours along the axis as it is.
+ * Side points towards the centroid of the rest of its object, or makes the frame right-handed. A
+ * mirrored or turned model gives the mirrored or turned frame. GRRL_ERR_ARGUMENT: no such body.
  */
 GRRL_MUST_USE enum grrl_status grrl_grounding_frame(const struct grrl_model *model, uint8_t body,
                                                     struct grrl_link_frame *frame);
 
 /*
  * The push that an action (a body's index, an index into grrl_direction_deg) means: through the
- * centroid, from the far side of the point cloud, starting where no feature of any body is in the
- * tool's way. GRRL_ERR_ARGUMENT.
+ * centroid, from behind the rearmost feature in the tool's way to beyond the foremost one. The
+ * start is backed off, by up to 0.4 m, until the clearance holds against every body's features.
+ * GRRL_ERR_ARGUMENT: no such body or direction. Cost: linear in features x steps backed off.
  */
 GRRL_MUST_USE enum grrl_status grrl_grounding_push(const struct grrl_model *model,
                                                    const struct grrl_grounding_config *config,
