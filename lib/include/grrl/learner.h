@@ -1,0 +1,107 @@
+/*
+ * learner.h: the whole agent without its wires.
+ *
+ * Order of calls, for each trial:
+ *
+ *   grrl_learner_begin_trial
+ *   grrl_learner_observe     every frame, at rest
+ *   grrl_learner_perceive    the model before the first push
+ *   repeat
+ *       grrl_learner_choose  (or grrl_learner_adopt: somebody else chose)
+ *       grrl_learner_observe every frame, while pushing and then at rest
+ *       grrl_learner_perceive
+ *       grrl_learner_learn   ended = false, or true when the supervisor ends the trial
+ *   until ended, or grrl_learner_abandon_trial
+ *
+ * Time never enters; random numbers come from the seed and the trial's number, so that the same
+ * frames and outcomes give the same choices, bit for bit.
+ */
+#ifndef GRRL_LEARNER_H
+#define GRRL_LEARNER_H
+
+#include "grrl/experience.h"
+#include "grrl/grounding.h"
+#include "grrl/perception.h"
+#include "grrl/policy.h"
+
+struct grrl_learner_config {
+    struct grrl_perception_config perception;
+    struct grrl_grounding_config grounding;
+    struct grrl_policy_config policy;
+    uint64_t seed;
+};
+
+/* A decision: what to push, how, and why. */
+struct grrl_decision {
+    struct grrl_choice choice;
+    uint16_t body_number; /* of the chosen link: the n of fn */
+    struct grrl_push push;
+};
+
+/* What a push taught. */
+struct grrl_lesson {
+    float reward;        /* links and joints newly revealed, plus the trial's reward at its end */
+    float target;        /* r + gamma max Q(s', a') */
+    uint16_t experience; /* the entry updated, or GRRL_NO_EXPERIENCE */
+};
+
+struct grrl_learner {
+    struct grrl_learner_config config;
+    struct grrl_perception perception;
+    struct grrl_experience_store store;
+    /* private */
+    struct grrl_random random;
+    struct grrl_graph state;    /* believed now: vertex i is body i of the model */
+    struct grrl_graph acted_on; /* believed when the last choice was made */
+    struct grrl_recall recall;  /* of state */
+    struct grrl_choice last_choice;
+    uint32_t trial;
+    uint32_t pushes;    /* in this trial */
+    uint8_t most_links; /* revealed so far in this trial */
+    uint8_t most_joints;
+    uint8_t phase;
+};
+
+void grrl_learner_config_default(struct grrl_learner_config *config);
+
+/* The memory for experiences is the caller's, as in grrl_experience_init. GRRL_ERR_ARGUMENT. */
+GRRL_MUST_USE enum grrl_status
+grrl_learner_init(struct grrl_learner *learner, const struct grrl_learner_config *config,
+                  struct grrl_experience_state *states, uint16_t states_capacity,
+                  struct grrl_experience *experiences, uint16_t experiences_capacity);
+
+/* Starts with a new object or a new pose. Ends an unfinished trial as grrl_learner_abandon_trial.
+ */
+void grrl_learner_begin_trial(struct grrl_learner *learner, uint32_t trial);
+
+void grrl_learner_observe(struct grrl_learner *learner, const struct grrl_frame *frame,
+                          bool pushing);
+
+/* Brings the model and the state up to date; at rest. GRRL_ERR_NONE: nothing was seen. */
+GRRL_MUST_USE enum grrl_status grrl_learner_perceive(struct grrl_learner *learner);
+
+/* Chooses the next push. GRRL_ERR_ORDER; GRRL_ERR_NONE: there is no link to push. */
+GRRL_MUST_USE enum grrl_status grrl_learner_choose(struct grrl_learner *learner,
+                                                   struct grrl_decision *decision);
+
+/* Takes a push somebody else chose, so that its outcome is learned. GRRL_ERR_NONE: the model has
+ * no body of this number. */
+GRRL_MUST_USE enum grrl_status grrl_learner_adopt(struct grrl_learner *learner,
+                                                  uint16_t body_number, uint8_t direction,
+                                                  struct grrl_decision *decision);
+
+/*
+ * Learns from the outcome of the last choice; after perceive. ended: the supervisor's special
+ * reward is added and nothing follows. GRRL_ERR_ORDER. With the random policy nothing is stored.
+ */
+GRRL_MUST_USE enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
+                                                  struct grrl_lesson *lesson);
+
+/* Forgets the trial, nothing is learned from a push without an outcome. */
+void grrl_learner_abandon_trial(struct grrl_learner *learner);
+
+/* The believed structure as a term, D(lb, ..), links named fn with their properties. */
+GRRL_MUST_USE enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
+                                                 struct grrl_term_store *store, grrl_term *term);
+
+#endif

@@ -1,0 +1,184 @@
+/*
+ * perception.h: from tracked feature points to links and joints (paper, section IV).
+ *
+ * Points come in frame by frame, with nothing but an id and a position in the table plane. Frames
+ * at rest and frames of a push are averaged into keyframes; the keyframes of a trial are the
+ * evidence. From them grrl_perception_update finds the bodies (sets of features that move as one
+ * rigid body) and, for each pair that moved relative to one another, a revolute or prismatic joint
+ * where the motion supports one. Evidence accumulates over the pushes of a trial and may overturn
+ * an earlier answer. docs/perception.md has the method.
+ *
+ * Order of calls: grrl_perception_init once; for each object grrl_perception_reset; frames by
+ * grrl_perception_observe; at rest after each push grrl_perception_update, then
+ * grrl_perception_model.
+ */
+#ifndef GRRL_PERCEPTION_H
+#define GRRL_PERCEPTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "grrl/config.h"
+#include "grrl/geometry.h"
+#include "grrl/graph.h"
+#include "grrl/status.h"
+
+/* The points visible at one time: table plane, right-handed, metres. Ids are any numbers that stay
+ * with a feature; their order means nothing. */
+struct grrl_frame {
+    uint32_t n;
+    const int32_t *id;
+    const float *x_m;
+    const float *y_m;
+};
+
+/* Fill with grrl_perception_config_default, then change what differs. */
+struct grrl_perception_config {
+    float noise_m;        /* standard deviation of a point in one frame, per axis; 0.0007 */
+    float model_error_m;  /* what rigidity and joints may be off, per axis; 0.0001 */
+    float keyframe_m;     /* how far features move in a push until the next keyframe; 0.008 */
+    float jump_m;         /* a point that moved farther in one frame is an outlier; 0.015 */
+    float table_m;        /* points beyond this distance from the origin are refused; 100 */
+    float min_turn_rad;   /* relative rotation below this supports no joint type; 0.05 */
+    float min_slide_m;    /* relative sliding below this supports no joint type; 0.0025 */
+    float pivot_scale_m;  /* pivots farther than this from their bodies are unlikely; 0.1 */
+    float gap_m;          /* joined bodies come at least this close in every keyframe; 0.08 */
+    float large_m;        /* links at least this long have the property large; 0.15 */
+    uint8_t min_features; /* fewer features are no body; 4 */
+};
+
+/* What a feature belongs to, when it is no body's. */
+enum { GRRL_FEATURE_BACKGROUND = 0xfe, GRRL_FEATURE_NONE = 0xff };
+
+/* A link: its features' point cloud now, in the world frame. */
+struct grrl_body {
+    uint16_t number; /* stays with the body for the trial: the n of its grounding set fn */
+    uint16_t n_features;
+    struct grrl_vec2 centroid_m;
+    struct grrl_vec2 axis; /* unit vector along the principal axis, without a meaningful sign */
+    float length_m;        /* extent of the cloud along the axis */
+    float width_m;         /* and across */
+    grrl_label properties; /* byte 0: GRRL_PROPERTY_SMALL or GRRL_PROPERTY_LARGE */
+};
+
+/* A joint between bodies a < b (indices), as it lies now in the world frame. */
+struct grrl_joint {
+    uint8_t a;
+    uint8_t b;
+    uint8_t type;             /* enum grrl_joint_type */
+    float probability;        /* of this type, given the evidence; 0.5 to 1 */
+    struct grrl_vec2 point_m; /* the pivot; a point on the sliding axis */
+    float pivot_sd_m;         /* standard deviation of the pivot, 0 for a prismatic joint */
+    struct grrl_vec2 axis;    /* unit vector of sliding; (0, 0) for a revolute joint */
+    float lower;              /* smallest and largest excursion seen from the first keyframe, */
+    float upper;              /* radians (b relative to a) or metres (along the axis) */
+};
+
+/* Everything perception believes. Bodies and joints are in order of discovery. */
+struct grrl_model {
+    uint8_t n_bodies;
+    uint8_t n_joints;
+    uint16_t n_features;
+    struct grrl_body body[GRRL_MAX_LINKS];
+    struct grrl_joint joint[GRRL_MAX_JOINTS];
+    int32_t feature_id[GRRL_MAX_FEATURES];
+    struct grrl_vec2 feature_m[GRRL_MAX_FEATURES]; /* now, or where it was last seen */
+    uint8_t feature_body[GRRL_MAX_FEATURES];       /* a body's index or GRRL_FEATURE_.. */
+};
+
+struct grrl_perception_counts {
+    uint32_t frames;
+    uint32_t outliers;       /* points that jumped, dropped */
+    uint32_t refused;        /* points that were not finite or off the table */
+    uint32_t overflow;       /* features beyond GRRL_MAX_FEATURES, dropped */
+    uint32_t thinned;        /* keyframes dropped to make room for newer ones */
+    uint16_t features_high;  /* most features at a time */
+    uint16_t keyframes_high; /* most keyframes at a time */
+};
+
+/* private: positions being averaged into a keyframe */
+struct grrl_perception_window {
+    float x[GRRL_MAX_FEATURES];
+    float y[GRRL_MAX_FEATURES];
+    uint8_t n[GRRL_MAX_FEATURES];
+    uint8_t frames;
+};
+
+/* private: one averaged picture of all features */
+struct grrl_perception_keyframe {
+    struct grrl_vec2 point[GRRL_MAX_FEATURES];
+    uint8_t weight[GRRL_MAX_FEATURES]; /* frames averaged, 0: not seen */
+    bool at_rest;
+};
+
+/* private: a body's pose in one keyframe, in units of one frame's noise */
+struct grrl_perception_pose {
+    struct grrl_pose pose;
+    float mass;    /* sum of its features' weights, 0: not seen */
+    float inertia; /* sum of weight times squared distance from the centroid, m^2 */
+};
+
+struct grrl_perception {
+    struct grrl_perception_config config;
+    struct grrl_perception_counts counts;
+
+    /* private: tracks, by slot */
+    uint16_t n_slots;
+    uint16_t slot_of_hash[4 * GRRL_MAX_FEATURES]; /* open addressing by id, slot + 1 */
+    int32_t id[GRRL_MAX_FEATURES];
+    struct grrl_vec2 last[GRRL_MAX_FEATURES];
+    uint32_t last_frame[GRRL_MAX_FEATURES];
+    uint8_t jumps[GRRL_MAX_FEATURES];
+    uint8_t body_of[GRRL_MAX_FEATURES];
+    uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
+
+    /* private: keyframes */
+    struct grrl_perception_window window;
+    bool moving;
+    uint8_t n_keyframes;
+    bool rest_open; /* the last keyframe is the rest being averaged */
+    struct grrl_perception_keyframe keyframe[GRRL_MAX_KEYFRAMES];
+
+    /* private: bodies */
+    uint8_t n_bodies;
+    uint16_t n_numbers;
+    uint16_t number[GRRL_MAX_LINKS];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+
+    /* private: the answer */
+    struct grrl_model model;
+};
+
+void grrl_perception_config_default(struct grrl_perception_config *config);
+
+/* GRRL_ERR_ARGUMENT for a configuration that is not finite or out of range. */
+GRRL_MUST_USE enum grrl_status grrl_perception_init(struct grrl_perception *perception,
+                                                    const struct grrl_perception_config *config);
+
+/* Forgets the object: what follows is a new one. The counts go on. */
+void grrl_perception_reset(struct grrl_perception *perception);
+
+/*
+ * Takes one frame. pushing: the robot is acting, things move. Points that are not finite or off the
+ * table are refused and counted, never an error. Cost: linear in the points.
+ */
+void grrl_perception_observe(struct grrl_perception *perception, const struct grrl_frame *frame,
+                             bool pushing);
+
+/*
+ * Works out bodies and joints from all keyframes, the frames at rest since the last push included.
+ * GRRL_ERR_NONE: no feature was seen yet. Cost: a few passes over features x bodies x keyframes.
+ */
+GRRL_MUST_USE enum grrl_status grrl_perception_update(struct grrl_perception *perception);
+
+/* The result of the last update; empty before the first. */
+const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception);
+
+/* The structure of a model: vertex i is body i, edge order is the order of discovery. names and
+ * edges as in grrl_graph_from_term; either may be NULL. */
+void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
+                      struct grrl_name *names, struct grrl_edge *edges);
+
+#endif
