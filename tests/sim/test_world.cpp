@@ -188,6 +188,35 @@ void bad_commands_are_refused(void **)
     assert_contains(world.begin_push(good), "a push is going on");
 }
 
+void bad_parameters_are_refused(void **)
+{
+    WorldParams params;
+    assert_string_equal(check_world(params).c_str(), "");
+    params.tracker.noise_sigma_m = -1.0;
+    assert_contains(check_world(params), "noise sigma (m) is -1 but must be from 0 to 0.1");
+    params = WorldParams{};
+    params.table_friction = std::numeric_limits<double>::quiet_NaN();
+    assert_contains(check_world(params), "table friction is nan but must be");
+}
+
+void a_joint_to_the_background_stays_in_place(void **)
+{
+    World world(must_build("R(lb, R(l1, l2))"), exact_params(), 6);
+    size_t background = 0;
+    while (!world.object().links[background].fixed)
+        background++;
+    assert_string_equal(world.object().links[background].name.c_str(), "lb");
+    Random random(2, Stream::PUSH);
+    Pose before = world.true_poses()[background];
+    for (int i = 0; i < 30; i++)
+        push_at_random(world, random);
+    assert_true(length(world.true_poses()[background].position - before.position) <= 0.0);
+    for (size_t j = 0; j < 2; j++)
+        assert_true(world.true_joint_range(static_cast<int>(j)) > radians(5.0));
+    for (int id = 0; id < world.tracker().feature_count(); id++)
+        assert_int_not_equal(world.tracker().true_link(static_cast<uint32_t>(id)), background);
+}
+
 void features_vary_and_ids_hide_the_bodies(void **)
 {
     int neighbours = 0;
@@ -336,6 +365,8 @@ int main()
         cmocka_unit_test(the_finger_does_not_land_on_a_link),
         cmocka_unit_test(friction_holds_what_is_not_pushed),
         cmocka_unit_test(bad_commands_are_refused),
+        cmocka_unit_test(bad_parameters_are_refused),
+        cmocka_unit_test(a_joint_to_the_background_stays_in_place),
         cmocka_unit_test(features_vary_and_ids_hide_the_bodies),
         cmocka_unit_test(frames_are_noisy_by_the_right_sigma),
         cmocka_unit_test(dropouts_and_outliers_come_as_often_as_told),
