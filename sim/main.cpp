@@ -213,7 +213,12 @@ int run(const Options &options, ObjectSpec object, lcm_t *lcm)
             log->write(channel, data, size);
         };
     Node node(lcm, std::move(config));
-    return loop(node, lcm, options, results, log.get()) ? 0 : 1;
+    int64_t start_us = now_us();
+    bool good = loop(node, lcm, options, results, log.get());
+    if (!options.quiet)
+        (void)std::printf("%lld frames in %.2f s\n", static_cast<long long>(node.frames()),
+                          static_cast<double>(now_us() - start_us) * 1e-6);
+    return good ? 0 : 1;
 }
 
 } // namespace
