@@ -30,16 +30,14 @@ static inline uint8_t grrl_first_bit(uint32_t set)
 #endif
 }
 
+/* Without a branch, and without the call that a builtin is on a machine with no instruction for it;
+ * compilers know the pattern. */
 static inline unsigned grrl_bit_count(uint32_t set)
 {
-#if defined(__GNUC__)
-    return (unsigned)__builtin_popcount(set);
-#else
-    unsigned n = 0;
-    for (; set != 0; set &= set - 1u)
-        n++;
-    return n;
-#endif
+    set -= set >> 1 & UINT32_C(0x55555555);
+    set = (set & UINT32_C(0x33333333)) + (set >> 2 & UINT32_C(0x33333333));
+    set = (set + (set >> 4)) & UINT32_C(0x0f0f0f0f);
+    return (set * UINT32_C(0x01010101)) >> 24;
 }
 
 #endif

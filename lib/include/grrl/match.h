@@ -31,16 +31,18 @@ struct grrl_match {
     const struct grrl_graph *pattern;
     const struct grrl_graph *target;
     enum grrl_match_kind kind;
-    grrl_label mask;
-    uint32_t budget;
-    uint8_t order[GRRL_MAX_LINKS];       /* pattern vertices, most constrained first */
-    uint8_t image[GRRL_MAX_LINKS];       /* of order[depth] */
-    uint32_t candidates[GRRL_MAX_LINKS]; /* targets not yet tried at each depth */
-    uint32_t compatible[GRRL_MAX_LINKS]; /* targets whose label and degrees fit */
-    uint32_t used;
-    int depth;
-    uint8_t fixed_from;
-    uint8_t fixed_to;
+    uint32_t budget; /* steps left */
+    int depth;       /* vertices mapped; negative: no further mapping */
+    uint32_t used;   /* their images */
+    uint32_t
+        compatible[GRRL_MAX_LINKS];   /* per pattern vertex: targets whose label and degrees fit */
+    uint8_t order[GRRL_MAX_LINKS];    /* pattern vertices, most constrained first */
+    uint8_t image[GRRL_MAX_LINKS];    /* per pattern vertex */
+    uint8_t terminal[GRRL_MAX_LINKS]; /* per depth: later neighbours that touch mapped vertices */
+    uint32_t earlier[GRRL_MAX_LINKS]; /* per depth: pattern vertices mapped before it */
+    uint32_t candidates[GRRL_MAX_LINKS];               /* per depth: targets not yet tried */
+    uint32_t reached[GRRL_MAX_LINKS];                  /* per depth: targets that touch an image */
+    uint32_t wanted[GRRL_JOINT_TYPES][GRRL_MAX_LINKS]; /* per depth: images of the neighbours */
 };
 
 /*
@@ -51,7 +53,8 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
                       const struct grrl_graph *pattern, const struct grrl_graph *target,
                       grrl_label mask, uint32_t budget);
 
-/* Only mappings that send this vertex of the pattern to that one of the target; after begin. */
+/* Only mappings that send this vertex of the pattern to that one of the target; between begin and
+ * the first next, as often as wanted. */
 void grrl_match_fix(struct grrl_match *match, uint8_t pattern_vertex, uint8_t target_vertex);
 
 /*
@@ -62,8 +65,8 @@ GRRL_MUST_USE enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t
 
 /*
  * Orbits of the automorphism group: orbit[i] is the smallest vertex that some automorphism maps i
- * onto. GRRL_ERR_UNDECIDED: some pair could not be decided within the budget and was taken as not
- * symmetric.
+ * onto. budget: search steps for each pair of vertices. GRRL_ERR_UNDECIDED: some pair could not be
+ * decided within it and was taken as not symmetric.
  */
 GRRL_MUST_USE enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label mask,
                                                  uint32_t budget, uint8_t *orbit);
