@@ -252,6 +252,7 @@ void adopt(ObjectSpec &object, const std::vector<bool> &on_loop, const std::vect
             continue;
         if (!joint.given) {
             joint.angle_rad = wrap_angle(joint.angle_rad + values[j]);
+            joint.friction *= loop_friction_share;
             continue;
         }
         double spread = (joint.initial_upper - joint.initial_lower) / 2.0;

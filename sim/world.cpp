@@ -1,5 +1,7 @@
 #include "world.hpp"
 
+#include <sstream>
+
 #include "kinematics.hpp"
 #include "physics.hpp"
 #include "placement.hpp"
@@ -165,6 +167,39 @@ void World::Impl::record_joints()
         least[j] = std::min(least[j], value);
         greatest[j] = std::max(greatest[j], value);
     }
+}
+
+std::string check_world(const WorldParams &params)
+{
+    const struct {
+        const char *name;
+        double value;
+        double least;
+        double most;
+    } ranges[] = {
+        {"table width (m)", params.table_m.x, 0.5, 20.0},
+        {"table height (m)", params.table_m.y, 0.5, 20.0},
+        {"table friction", params.table_friction, 0.05, 2.0},
+        {"contact offset sigma (m)", params.contact_offset_sigma_m, 0.0, 0.1},
+        {"push direction sigma (rad)", params.push_direction_sigma_rad, 0.0, 1.0},
+        {"friction spread", params.friction_spread, 0.0, 0.9},
+        {"noise sigma (m)", params.tracker.noise_sigma_m, 0.0, 0.1},
+        {"drop-out probability", params.tracker.dropout_probability, 0.0, 1.0},
+        {"outlier probability", params.tracker.outlier_probability, 0.0, 1.0},
+        {"outlier reach (m)", params.tracker.outlier_reach_m, 0.0, 1.0},
+        {"background features", static_cast<double>(params.tracker.background_features), 0.0,
+         static_cast<double>(GRRL_MAX_FEATURES)},
+        {"feature distance (m)", params.tracker.feature_distance_m, 0.0, 0.1},
+    };
+    for (const auto &range : ranges) {
+        if (range.value >= range.least && range.value <= range.most) /* false for NaN */
+            continue;
+        std::ostringstream message;
+        message << range.name << " is " << range.value << " but must be from " << range.least
+                << " to " << range.most;
+        return message.str();
+    }
+    return {};
 }
 
 World::World(const ObjectSpec &object, const WorldParams &params, uint64_t seed)

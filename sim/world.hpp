@@ -35,10 +35,14 @@ struct WorldParams {
     TrackerParams tracker;
 };
 
+/* Empty if the parameters make a world, else which does not and what would be right. */
+std::string check_world(const WorldParams &params);
+
 class World
 {
 public:
-    /* A random configuration of the object at a random place. */
+    /* A random configuration of the object at a random place; parameters that check_world passes.
+     */
     World(const ObjectSpec &object, const WorldParams &params, uint64_t seed);
     ~World();
     World(World &&) noexcept;
