@@ -21,6 +21,8 @@
 #include "grrl/random.h"
 #include "grrl/term.h"
 
+_Static_assert(GRRL_MAX_LINKS >= 10 && GRRL_MAX_JOINTS >= 16, "the structures of these tests fit");
+
 static inline struct grrl_random support_random(const char *test)
 {
     const char *given = getenv("GRRL_TEST_SEED");

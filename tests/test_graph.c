@@ -266,6 +266,27 @@ static void test_order_of_discovery(void **state)
     }
 }
 
+/* Without an order of discovery a chain or loop becomes one nested relation. */
+static void test_own_order(void **state)
+{
+    static const char *const cases[][2] = {
+        {"R(l3, l1) & P(l1, l4) & R(l2, l4)", "R(l2, P(l4, R(l1, l3)))"},
+        {"R(l1, l2) & R(l3, l4) & R(l2, l3) & P(l4, l1)", "P(l1, R(l4, R(l3, R(l2, l1))))"},
+        {"R(l1, l2) & R(l2, l3) & R(l3, l4) & R(l4, l2)", "R(l2, R(l4, R(l3, R(l2, l1))))"},
+        {"R(l1, l2, l3, l4)", "R(l3, R(l1, l2)) & R(l1, l4)"},
+        {"R(l1, l2, P(l3, l4)) & D(l5, l6)", "D(P(l4, R(l3, R(l1, l2))), l5, l6)"},
+    };
+    struct grrl_term_store *store = store_of(state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct structure s = read_structure(store, support_parse(store, cases[i][0]));
+        grrl_term term;
+        assert_int_equal(grrl_graph_to_term(store, &s.graph, s.names, NULL, 0, false, &term),
+                         GRRL_OK);
+        support_assert_prints(store, term, cases[i][1]);
+        grrl_term_release(store, 1);
+    }
+}
+
 static void test_to_term_checks(void **state)
 {
     struct grrl_term_store *store = store_of(state);
@@ -401,6 +422,7 @@ int main(void)
         cmocka_unit_test_setup(test_full, setup),
         cmocka_unit_test_setup(test_joints, setup),
         cmocka_unit_test_setup(test_order_of_discovery, setup),
+        cmocka_unit_test_setup(test_own_order, setup),
         cmocka_unit_test_setup(test_to_term_checks, setup),
         cmocka_unit_test_setup(test_random_round_trips, setup),
         cmocka_unit_test_setup(test_discovery_survives, setup),

@@ -401,7 +401,7 @@ static void test_unify_full(void **state)
     assert_int_equal(binding.n, 2 * GRRL_MAX_LINKS);
 }
 
-/* A random term built bottom up from a pool of terms; no deeper than its number of steps. */
+/* A random term built bottom up from a pool of terms. */
 static grrl_term random_term(struct grrl_term_store *store, struct grrl_random *random)
 {
     grrl_term pool[40];
@@ -424,6 +424,9 @@ static grrl_term random_term(struct grrl_term_store *store, struct grrl_random *
         enum grrl_term_kind kind =
             (enum grrl_term_kind)(GRRL_TERM_REVOLUTE + grrl_random_below(random, 4));
         uint16_t from = (uint16_t)grrl_random_below(random, n - taken + 1u);
+        for (uint16_t i = from; i < from + taken; i++)
+            if (grrl_term_node(store, pool[i])->depth == GRRL_MAX_TERM_DEPTH)
+                kind = GRRL_TERM_AND; /* no further relation may be around it */
         assert_int_equal(grrl_term_make(store, kind, pool + from, taken, &pool[from]), GRRL_OK);
         for (uint16_t i = (uint16_t)(from + 1); i + taken - 1 < n; i++)
             pool[i] = pool[i + taken - 1];

@@ -354,19 +354,53 @@ static bool edges_fit(const struct grrl_graph *graph, const struct grrl_edge *ed
     return true;
 }
 
-/* The joints by the link they lead to, each from an earlier link: a chain numbered along itself
- * becomes R(R(l1, l2), l3). */
-static uint8_t list_edges(const struct grrl_graph *graph, struct grrl_edge *edges)
+/* Where the next trail of joints begins: at a link already on one, so that a component is finished
+ * first, or at an end of a new component. GRRL_MAX_LINKS when no joint is left. */
+static uint8_t begin_trail(uint8_t n, const uint32_t *left, uint32_t on_trail)
 {
-    uint8_t n = 0;
-    for (uint8_t b = 0; b < graph->n; b++) {
-        uint32_t earlier = grrl_graph_neighbours(graph, b) & grrl_bits_below(b);
-        for (; earlier != 0; earlier &= earlier - 1u) {
-            uint8_t a = grrl_first_bit(earlier);
-            edges[n++] = (struct grrl_edge){a, b, (uint8_t)grrl_graph_joint(graph, a, b)};
+    uint8_t best = GRRL_MAX_LINKS;
+    unsigned fewest = GRRL_MAX_LINKS;
+    for (uint8_t i = 0; i < n; i++) {
+        unsigned joints = grrl_bit_count(left[i]);
+        if (joints > 0 && (on_trail & grrl_bit(i)) != 0)
+            return i;
+        if (joints > 0 && joints < fewest) {
+            best = i;
+            fewest = joints;
         }
     }
-    return n;
+    return best;
+}
+
+/*
+ * All joints as trails from link to link, which nest without a conjunction: the first of a
+ * component grows in front, R(l3, R(l2, l1)), and a branch, whose first joint stands beside that,
+ * at the end.
+ */
+static uint8_t list_edges(const struct grrl_graph *graph, struct grrl_edge *edges)
+{
+    uint32_t left[GRRL_MAX_LINKS];
+    for (uint8_t i = 0; i < graph->n; i++)
+        left[i] = grrl_graph_neighbours(graph, i);
+    uint32_t on_trail = 0;
+    uint8_t n = 0;
+    for (;;) {
+        uint8_t at = begin_trail(graph->n, left, on_trail);
+        if (at == GRRL_MAX_LINKS)
+            return n;
+        bool is_branch = (on_trail & grrl_bit(at)) != 0;
+        on_trail |= grrl_bit(at);
+        while (left[at] != 0) {
+            uint8_t next = grrl_first_bit(left[at]);
+            left[at] &= ~grrl_bit(next);
+            left[next] &= ~grrl_bit(at);
+            on_trail |= grrl_bit(next);
+            edges[n].a = is_branch ? at : next;
+            edges[n].b = is_branch ? next : at;
+            edges[n++].type = (uint8_t)grrl_graph_joint(graph, at, next);
+            at = next;
+        }
+    }
 }
 
 enum grrl_status grrl_graph_to_term(struct grrl_term_store *store, const struct grrl_graph *graph,

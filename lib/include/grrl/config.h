@@ -8,6 +8,8 @@
 #ifndef GRRL_CONFIG_H
 #define GRRL_CONFIG_H
 
+#include <assert.h> /* static_assert, in C and C++ */
+
 /* Links of one structure, all objects on the table together: 2 to 32. */
 #ifndef GRRL_MAX_LINKS
 #define GRRL_MAX_LINKS 16
@@ -46,12 +48,12 @@
 #define GRRL_MAX_TERM_DEPTH 64
 #endif
 
-_Static_assert(GRRL_MAX_LINKS >= 2 && GRRL_MAX_LINKS <= 32, "links are bits of a 32-bit mask");
-_Static_assert(GRRL_MAX_JOINTS >= GRRL_MAX_LINKS - 1, "a tree must fit");
-_Static_assert(GRRL_MAX_FEATURES >= 8 && GRRL_MAX_FEATURES <= 1024, "feature slots");
-_Static_assert(GRRL_MAX_KEYFRAMES >= 8 && GRRL_MAX_KEYFRAMES <= 255, "keyframe slots");
-_Static_assert(GRRL_MAX_PROPERTIES >= 1 && GRRL_MAX_PROPERTIES <= 8, "bytes of a 64-bit label");
-_Static_assert(GRRL_MAX_TERM_DEPTH >= 2 && GRRL_MAX_TERM_DEPTH <= 127, "depths are bytes");
-_Static_assert(GRRL_MAX_SYMBOLS >= 8 && GRRL_MAX_SYMBOLS <= 127, "symbols are 7-bit ids");
+static_assert(GRRL_MAX_LINKS >= 2 && GRRL_MAX_LINKS <= 32, "links are bits of a 32-bit mask");
+static_assert(GRRL_MAX_JOINTS >= GRRL_MAX_LINKS - 1, "a tree must fit");
+static_assert(GRRL_MAX_FEATURES >= 8 && GRRL_MAX_FEATURES <= 1024, "feature slots");
+static_assert(GRRL_MAX_KEYFRAMES >= 8 && GRRL_MAX_KEYFRAMES <= 255, "keyframe slots");
+static_assert(GRRL_MAX_PROPERTIES >= 1 && GRRL_MAX_PROPERTIES <= 8, "bytes of a 64-bit label");
+static_assert(GRRL_MAX_TERM_DEPTH >= 2 && GRRL_MAX_TERM_DEPTH <= 127, "depths are bytes");
+static_assert(GRRL_MAX_SYMBOLS >= 8 && GRRL_MAX_SYMBOLS <= 127, "symbols are 7-bit ids");
 
 #endif

@@ -98,10 +98,10 @@ GRRL_MUST_USE enum grrl_status grrl_graph_from_term(const struct grrl_term_store
 /*
  * A term that describes the graph; round trip for every structure. edges gives the joints in order
  * of discovery, so that the first discovered is the most deeply nested (n_edges of them, each joint
- * of the graph once; NULL: any order). with_background writes D(lb, ..) around it, unless a joint
- * makes the background a link of its own; a graph without links is `lb`. The names must differ.
- * At most 2 n + 4 joints + 2 nodes. GRRL_ERR_FULL; GRRL_ERR_ARGUMENT: names or edges that do not
- * fit the graph, a background without a joint, a property the store does not know.
+ * of the graph once; NULL: an order that nests well). with_background writes D(lb, ..) around it,
+ * unless a joint makes the background a link of its own; a graph without links is `lb`. The names
+ * must differ. At most 2 n + 4 joints + 2 nodes. GRRL_ERR_FULL; GRRL_ERR_ARGUMENT: names or edges
+ * that do not fit the graph, a background without a joint, a property the store does not know.
  */
 GRRL_MUST_USE enum grrl_status grrl_graph_to_term(struct grrl_term_store *store,
                                                   const struct grrl_graph *graph,

@@ -38,12 +38,12 @@ struct grrl_perception_config {
     float noise_m;        /* standard deviation of a point in one frame, per axis; 0.0007 */
     float model_error_m;  /* what rigidity and joints may be off, per axis; 0.0001 */
     float keyframe_m;     /* how far features move in a push until the next keyframe; 0.008 */
-    float jump_m;         /* a point that moved farther in one frame is an outlier; 0.03 */
+    float jump_m;         /* a point that moved farther in one frame is an outlier; 0.015 */
     float table_m;        /* points beyond this distance from the origin are refused; 100 */
     float min_turn_rad;   /* relative rotation below this supports no joint type; 0.05 */
     float min_slide_m;    /* relative sliding below this supports no joint type; 0.0025 */
     float pivot_scale_m;  /* pivots farther than this from their bodies are unlikely; 0.1 */
-    float gap_m;          /* joined bodies come at least this close in every keyframe; 0.08 */
+    float gap_m;          /* joined bodies stay this close, three of their features; 0.1 */
     float large_m;        /* links at least this long have the property large; 0.15 */
     uint8_t min_features; /* fewer features are no body; 4 */
 };
@@ -97,36 +97,58 @@ struct grrl_perception_counts {
     uint16_t keyframes_high; /* most keyframes at a time */
 };
 
-/* A window of frames being averaged. */
+/* private: positions being averaged into a keyframe */
 struct grrl_perception_window {
-    /* private */
     float x[GRRL_MAX_FEATURES];
     float y[GRRL_MAX_FEATURES];
-    uint16_t n[GRRL_MAX_FEATURES];
-    uint16_t frames;
+    uint8_t n[GRRL_MAX_FEATURES];
+    uint8_t frames;
+};
+
+/* private: one averaged picture of all features */
+struct grrl_perception_keyframe {
+    struct grrl_vec2 point[GRRL_MAX_FEATURES];
+    uint8_t weight[GRRL_MAX_FEATURES]; /* frames averaged, 0: not seen */
+    bool at_rest;
+};
+
+/* private: a body's pose in one keyframe, in units of one frame's noise */
+struct grrl_perception_pose {
+    struct grrl_pose pose;
+    float mass;    /* sum of its features' weights, 0: not seen */
+    float inertia; /* sum of weight times squared distance from the centroid, m^2 */
 };
 
 struct grrl_perception {
     struct grrl_perception_config config;
     struct grrl_perception_counts counts;
 
-    /* private */
-    struct grrl_model model;
-    uint16_t n_features;
+    /* private: tracks, by slot */
+    uint16_t n_slots;
     uint16_t slot_of_hash[4 * GRRL_MAX_FEATURES]; /* open addressing by id, slot + 1 */
     int32_t id[GRRL_MAX_FEATURES];
     struct grrl_vec2 last[GRRL_MAX_FEATURES];
+    uint32_t last_frame[GRRL_MAX_FEATURES];
     uint8_t jumps[GRRL_MAX_FEATURES];
     uint8_t body_of[GRRL_MAX_FEATURES];
-    uint16_t n_numbers;
-    uint8_t n_keyframes;
-    uint8_t rest_keyframe; /* the keyframe of the last rest, 0xff before the first */
-    bool moving;
-    struct grrl_vec2 point[GRRL_MAX_KEYFRAMES][GRRL_MAX_FEATURES];
-    uint8_t weight[GRRL_MAX_KEYFRAMES][GRRL_MAX_FEATURES]; /* frames averaged, 0 if unseen */
-    uint8_t is_rest[GRRL_MAX_KEYFRAMES];
+    uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
+
+    /* private: keyframes */
     struct grrl_perception_window window;
-    struct grrl_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+    bool moving;
+    uint8_t n_keyframes;
+    bool rest_open; /* the last keyframe is the rest being averaged */
+    struct grrl_perception_keyframe keyframe[GRRL_MAX_KEYFRAMES];
+
+    /* private: bodies */
+    uint8_t n_bodies;
+    uint16_t n_numbers;
+    uint16_t number[GRRL_MAX_LINKS];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+
+    /* private: the answer */
+    struct grrl_model model;
 };
 
 void grrl_perception_config_default(struct grrl_perception_config *config);

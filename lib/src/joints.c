@@ -1,0 +1,528 @@
+/*
+ * joints.c: what ties two bodies together.
+ *
+ * Three models of the relative motion of a pair are compared on all keyframes that saw both:
+ *   revolute    one point of either body stays on one point of the other: 4 parameters
+ *   prismatic   no relative turn, sliding along one line: 3 parameters
+ *   free        anything; explains all, but pays for each keyframe in which it was needed
+ * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
+ * sliding), and a joint type is called only when the motion excites it. Joints come from a maximum
+ * spanning forest over the evidence; a joint that closes a loop of four links or more needs
+ * more of it (a triangle of joints could not move).
+ */
+#include "perception_internal.h"
+
+#define FREE_COST 14.0f      /* chi squared a free pose costs in a keyframe that needs it */
+#define FREE_COST_MAX 140.0f /* neighbouring keyframes are not independent: no more than this */
+#define TYPE_MARGIN 8.0f     /* chi squared by which one type must be better than the other */
+#define LOOP_COST 40.0f      /* and a joint that closes a loop better than free */
+#define EXCITED_SIGMAS 5.0f  /* relative motion in standard deviations */
+
+/* The relative motion of bodies a and b in one keyframe, in the frame of a. */
+struct relative {
+    float c; /* rotation of b in a */
+    float s;
+    struct grrl_vec2 d; /* origin of b in a */
+    const struct grrl_perception_pose *pa;
+    const struct grrl_perception_pose *pb;
+};
+
+struct motion {
+    uint8_t n;
+    struct relative at[GRRL_MAX_KEYFRAMES];
+    float noise2;
+    float c0; /* mean rotation */
+    float s0;
+};
+
+/* How well a joint type explains a motion. */
+struct fit {
+    float excess; /* chi squared beyond its expectation */
+    bool excited; /* the motion is large enough to tell */
+    float lower;  /* excursion from the first keyframe */
+    float upper;
+    struct grrl_vec2 in_a;
+    struct grrl_vec2 in_b;
+    struct grrl_vec2 axis_in_a;
+    float pivot_variance;
+};
+
+struct evidence {
+    float weight; /* chi squared better than free */
+    float odds;   /* chi squared better than the other type */
+    uint8_t a;
+    uint8_t b;
+    uint8_t type;
+    struct fit fit;
+};
+
+static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struct motion *motion)
+{
+    motion->n = 0;
+    motion->noise2 = p->config.noise_m * p->config.noise_m;
+    float c = 0.0f;
+    float s = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pa = &p->pose[k][a];
+        const struct grrl_perception_pose *pb = &p->pose[k][b];
+        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
+            continue;
+        }
+        struct relative *r = &motion->at[motion->n++];
+        r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
+        r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
+        r->d = grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p));
+        r->pa = pa;
+        r->pb = pb;
+        c += r->c;
+        s += r->s;
+    }
+    float length = grrl_sqrt(c * c + s * s);
+    motion->c0 = length > 0.0f ? c / length : 1.0f;
+    motion->s0 = length > 0.0f ? s / length : 0.0f;
+}
+
+/* Variance per axis of the distance between a point of a and a point of b, given their squared
+ * distances from the bodies' origins; model error of either body included. */
+static float point_variance(const struct grrl_perception *p, const struct motion *motion,
+                            const struct relative *r, float lever_a2, float lever_b2)
+{
+    float model = p->config.model_error_m;
+    return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
+                             0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
+                                     lever_b2 / (r->pb->inertia + 1e-9f))) +
+           2.0f * model * model;
+}
+
+static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
+                           const struct relative *r)
+{
+    /* the model error of a body's n features acts on its turn like noise of one frame each */
+    float model2 = p->config.model_error_m * p->config.model_error_m;
+    return (motion->noise2 + 4.0f * model2) *
+           (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f));
+}
+
+static float turn_from_mean(const struct motion *motion, const struct relative *r)
+{
+    return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
+}
+
+/* Half the extent of a body's features. */
+static float half_extent(const struct grrl_perception *p, uint8_t body)
+{
+    float far2 = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            float d2 = grrl_vec2_dot(p->shape[i], p->shape[i]);
+            far2 = d2 > far2 ? d2 : far2;
+        }
+    }
+    return grrl_sqrt(far2);
+}
+
+/*
+ * Least squares for the pivot: pa + .. minimises sum w |pa - R pb - d|^2 + |pa|^2 / sa^2 +
+ * |pb|^2 / sb^2. R is a rotation, so the 4 x 4 normal equations reduce to scalars.
+ */
+static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
+                         float hb, struct fit *fit)
+{
+    float sa = p->config.pivot_scale_m + ha;
+    float sb = p->config.pivot_scale_m + hb;
+    float lever_a2 = ha * ha;
+    float lever_b2 = hb * hb;
+    float chi2 = 0.0f;
+    for (int round = 0; round < 2; round++) {
+        float w = 0.0f;
+        float mc = 0.0f;
+        float ms = 0.0f;
+        struct grrl_vec2 d = {0.0f, 0.0f};
+        struct grrl_vec2 e = {0.0f, 0.0f};
+        for (uint8_t k = 0; k < motion->n; k++) {
+            const struct relative *r = &motion->at[k];
+            float wk = 1.0f / point_variance(p, motion, r, lever_a2, lever_b2);
+            w += wk;
+            mc += wk * r->c;
+            ms += wk * r->s;
+            d = grrl_vec2_add(d, grrl_vec2_scale(r->d, wk));
+            e.x += wk * (r->c * r->d.x + r->s * r->d.y);
+            e.y += wk * (-r->s * r->d.x + r->c * r->d.y);
+        }
+        float a = w + 1.0f / (sa * sa);
+        float b = w + 1.0f / (sb * sb);
+        float schur = b - (mc * mc + ms * ms) / a;
+        schur = schur > 1.0f / (sb * sb) ? schur : 1.0f / (sb * sb); /* rounding */
+        fit->in_b.x = ((mc * d.x + ms * d.y) / a - e.x) / schur;
+        fit->in_b.y = ((-ms * d.x + mc * d.y) / a - e.y) / schur;
+        fit->in_a.x = (d.x + mc * fit->in_b.x - ms * fit->in_b.y) / a;
+        fit->in_a.y = (d.y + ms * fit->in_b.x + mc * fit->in_b.y) / a;
+        fit->pivot_variance = 1.0f / schur;
+        lever_a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
+        lever_b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
+    }
+    fit->lower = 0.0f;
+    fit->upper = 0.0f;
+    float first = turn_from_mean(motion, &motion->at[0]);
+    float least_variance = 1e9f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 q = {r->c * fit->in_b.x - r->s * fit->in_b.y,
+                              r->s * fit->in_b.x + r->c * fit->in_b.y};
+        struct grrl_vec2 miss = grrl_vec2_sub(grrl_vec2_sub(fit->in_a, q), r->d);
+        chi2 += grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+        float turn = grrl_wrap_rad(turn_from_mean(motion, r) - first);
+        float variance = turn_variance(p, motion, r);
+        fit->lower = turn < fit->lower ? turn : fit->lower;
+        fit->upper = turn > fit->upper ? turn : fit->upper;
+        least_variance = variance < least_variance ? variance : least_variance;
+    }
+    chi2 += lever_a2 / (sa * sa) + lever_b2 / (sb * sb);
+    fit->excess = chi2 - 2.0f * (float)motion->n + 4.0f;
+    float range = fit->upper - fit->lower;
+    fit->excited = range > p->config.min_turn_rad &&
+                   range * range > EXCITED_SIGMAS * EXCITED_SIGMAS * least_variance;
+    fit->axis_in_a = (struct grrl_vec2){0.0f, 0.0f};
+}
+
+/* The sliding point half way between the bodies, so that the turn noise of both counts the same. */
+static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r,
+                                    struct grrl_vec2 middle)
+{
+    float turn = r->s * motion->c0 - r->c * motion->s0;
+    return (struct grrl_vec2){r->d.x - 0.5f * (middle.x - turn * middle.y),
+                              r->d.y - 0.5f * (middle.y + turn * middle.x)};
+}
+
+static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
+                          struct fit *fit)
+{
+    struct grrl_vec2 middle = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++) {
+        middle = grrl_vec2_add(middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    }
+    float lever2 = 0.25f * grrl_vec2_dot(middle, middle);
+    float w = 0.0f;
+    struct grrl_vec2 mean = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++) {
+        float wk = 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
+        w += wk;
+        mean =
+            grrl_vec2_add(mean, grrl_vec2_scale(slide_point(motion, &motion->at[k], middle), wk));
+    }
+    mean = grrl_vec2_scale(mean, 1.0f / w);
+    float xx = 0.0f;
+    float xy = 0.0f;
+    float yy = 0.0f;
+    float chi2 = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 q = grrl_vec2_sub(slide_point(motion, r, middle), mean);
+        float wk = 1.0f / point_variance(p, motion, r, lever2, lever2);
+        xx += wk * q.x * q.x;
+        xy += wk * q.x * q.y;
+        yy += wk * q.y * q.y;
+        float turn = turn_from_mean(motion, r);
+        chi2 += turn * turn / turn_variance(p, motion, r);
+    }
+    float major;
+    float minor;
+    grrl_principal_axes(xx, xy, yy, &major, &minor, &fit->axis_in_a);
+    chi2 += minor;
+    fit->excess = chi2 - 2.0f * (float)motion->n + 3.0f;
+    fit->lower = 0.0f;
+    fit->upper = 0.0f;
+    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], middle), fit->axis_in_a);
+    for (uint8_t k = 0; k < motion->n; k++) {
+        float slide =
+            grrl_vec2_dot(slide_point(motion, &motion->at[k], middle), fit->axis_in_a) - first;
+        fit->lower = slide < fit->lower ? slide : fit->lower;
+        fit->upper = slide > fit->upper ? slide : fit->upper;
+    }
+    float range = fit->upper - fit->lower;
+    fit->excited = range > p->config.min_slide_m &&
+                   range * range * w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
+    fit->in_a = grrl_vec2_scale(mean, 1.0f);
+    fit->in_b = (struct grrl_vec2){0.0f, 0.0f};
+    fit->pivot_variance = 0.0f;
+}
+
+/* What free motion pays: the keyframes that differ from a rigid pair, up to a limit. */
+static float free_cost(const struct grrl_perception *p, const struct motion *motion)
+{
+    struct grrl_vec2 mean = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++) {
+        mean = grrl_vec2_add(mean, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    }
+    float lever2 = 0.25f * grrl_vec2_dot(mean, mean);
+    float cost = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 off = grrl_vec2_sub(r->d, mean);
+        float turn = turn_from_mean(motion, r);
+        float rigid = grrl_vec2_dot(off, off) / point_variance(p, motion, r, lever2, lever2) +
+                      turn * turn / turn_variance(p, motion, r);
+        cost += rigid < FREE_COST ? rigid : FREE_COST;
+    }
+    return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
+}
+
+/* The distance from a point in a body's frame to its third nearest feature: a few features beside
+ * a joint may be counted to the wrong body. */
+static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
+{
+    float nearest2[3] = {1e9f, 1e9f, 1e9f};
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
+            float d2 = grrl_vec2_dot(d, d);
+            for (int at = 0; at < 3; at++) {
+                if (d2 < nearest2[at]) {
+                    float t = nearest2[at];
+                    nearest2[at] = d2;
+                    d2 = t;
+                }
+            }
+        }
+    }
+    return grrl_sqrt(nearest2[2]);
+}
+
+/* Distance between the nearest features of two bodies in keyframe k. */
+static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
+{
+    const struct grrl_perception_pose *pb = &p->pose[k][b];
+    const struct grrl_perception_pose *pa = &p->pose[k][a];
+    float best = 1e9f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == b) {
+            struct grrl_vec2 world = grrl_transform(pb->pose, p->shape[i]);
+            float d = distance_to_body(p, a, grrl_untransform(pa->pose, world));
+            best = d < best ? d : best;
+        }
+    }
+    return best;
+}
+
+/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
+ */
+static bool is_near(const struct grrl_perception *p, const struct evidence *e)
+{
+    float gap = p->config.gap_m;
+    if (e->type == GRRL_REVOLUTE) {
+        return distance_to_body(p, e->a, e->fit.in_a) < gap &&
+               distance_to_body(p, e->b, e->fit.in_b) < gap;
+    }
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        bool both = p->pose[k][e->a].mass > 0.0f && p->pose[k][e->b].mass > 0.0f;
+        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Weighs the evidence for a joint between a and b; false: none is supported. */
+static bool weigh(const struct grrl_perception *p, uint8_t a, uint8_t b, struct evidence *e)
+{
+    struct motion motion;
+    struct fit revolute;
+    struct fit prismatic;
+    collect(p, a, b, &motion);
+    if (motion.n < 2) {
+        return false;
+    }
+    fit_revolute(p, &motion, half_extent(p, a), half_extent(p, b), &revolute);
+    fit_prismatic(p, &motion, &prismatic);
+    float free = free_cost(p, &motion);
+    bool is_revolute = revolute.excess < prismatic.excess;
+    e->fit = is_revolute ? revolute : prismatic;
+    e->type = is_revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC;
+    e->a = a;
+    e->b = b;
+    e->weight = free - e->fit.excess;
+    e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
+    return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
+}
+
+/* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
+static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
+{
+    uint32_t reached = UINT32_C(1) << a;
+    for (unsigned links = 1; links <= GRRL_MAX_LINKS; links++) {
+        if ((reached >> b & 1u) != 0) {
+            return links;
+        }
+        uint32_t next = reached;
+        for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++) {
+            next |= (reached >> i & 1u) != 0 ? joined[i] : 0u;
+        }
+        if (next == reached) {
+            return 0;
+        }
+        reached = next;
+    }
+    return 0;
+}
+
+/* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
+ * returns how many. */
+static uint8_t choose_structure(struct evidence *e, uint16_t n)
+{
+    uint32_t joined[GRRL_MAX_LINKS] = {0};
+    for (uint16_t i = 1; i < n; i++) {
+        struct evidence moving = e[i];
+        uint16_t j = i;
+        while (j > 0 && e[j - 1].weight < moving.weight) {
+            e[j] = e[j - 1];
+            j--;
+        }
+        e[j] = moving;
+    }
+    uint8_t accepted = 0;
+    for (int loops = 0; loops < 2; loops++) {
+        for (uint16_t i = accepted; i < n && accepted < GRRL_MAX_JOINTS; i++) {
+            unsigned links = links_between(joined, e[i].a, e[i].b);
+            bool take = loops == 0 ? links == 0 : links >= 4 && e[i].weight > LOOP_COST;
+            if (take) {
+                struct evidence taken = e[i];
+                joined[taken.a] |= UINT32_C(1) << taken.b;
+                joined[taken.b] |= UINT32_C(1) << taken.a;
+                e[i] = e[accepted];
+                e[accepted++] = taken;
+            }
+        }
+    }
+    return accepted;
+}
+
+static float probability_of(const struct evidence *e)
+{
+    float least = e->odds < e->weight ? e->odds : e->weight;
+    return 1.0f / (1.0f + grrl_exp(-0.5f * least));
+}
+
+static void describe_joint(const struct grrl_perception *p, const struct evidence *e,
+                           struct grrl_joint *joint)
+{
+    const struct grrl_pose pose = p->pose[p->n_keyframes - 1][e->a].pose;
+    *joint = (struct grrl_joint){
+        .a = e->a,
+        .b = e->b,
+        .type = e->type,
+        .probability = probability_of(e),
+        .point_m = grrl_transform(pose, e->fit.in_a),
+        .pivot_sd_m = grrl_sqrt(e->fit.pivot_variance),
+        .axis = grrl_rotate(pose, e->fit.axis_in_a),
+        .lower = e->fit.lower,
+        .upper = e->fit.upper,
+    };
+}
+
+static void describe_body(const struct grrl_perception *p, uint8_t body, struct grrl_body *out,
+                          const struct grrl_model *model)
+{
+    struct grrl_vec2 sum = {0.0f, 0.0f};
+    float n = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            sum = grrl_vec2_add(sum, model->feature_m[i]);
+            n += 1.0f;
+        }
+    }
+    out->number = p->number[body];
+    out->n_features = (uint16_t)n;
+    out->centroid_m = grrl_vec2_scale(sum, n > 0.0f ? 1.0f / n : 0.0f);
+    float xx = 0.0f;
+    float xy = 0.0f;
+    float yy = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
+            xx += d.x * d.x;
+            xy += d.x * d.y;
+            yy += d.y * d.y;
+        }
+    }
+    float major;
+    float minor;
+    grrl_principal_axes(xx, xy, yy, &major, &minor, &out->axis);
+    float along[2] = {1e9f, -1e9f};
+    float across[2] = {1e9f, -1e9f};
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
+            float x = grrl_vec2_dot(out->axis, d);
+            float y = grrl_vec2_cross(out->axis, d);
+            along[0] = x < along[0] ? x : along[0];
+            along[1] = x > along[1] ? x : along[1];
+            across[0] = y < across[0] ? y : across[0];
+            across[1] = y > across[1] ? y : across[1];
+        }
+    }
+    out->length_m = along[1] - along[0];
+    out->width_m = across[1] - across[0];
+    out->properties = out->length_m >= p->config.large_m ? (grrl_label)GRRL_PROPERTY_LARGE
+                                                         : (grrl_label)GRRL_PROPERTY_SMALL;
+}
+
+/* Joints in order of discovery: those of the last model that still hold come first. */
+static uint8_t order_of_discovery(const struct grrl_perception *p, const struct evidence *e,
+                                  uint8_t n, uint8_t *order)
+{
+    uint8_t count = 0;
+    bool placed[GRRL_MAX_JOINTS] = {false};
+    for (uint8_t j = 0; j < p->model.n_joints; j++) {
+        uint16_t a = p->model.body[p->model.joint[j].a].number;
+        uint16_t b = p->model.body[p->model.joint[j].b].number;
+        for (uint8_t i = 0; i < n; i++) {
+            uint16_t ea = p->number[e[i].a];
+            uint16_t eb = p->number[e[i].b];
+            if (!placed[i] && ((ea == a && eb == b) || (ea == b && eb == a))) {
+                placed[i] = true;
+                order[count++] = i;
+            }
+        }
+    }
+    for (uint8_t i = 0; i < n; i++) {
+        if (!placed[i]) {
+            order[count++] = i;
+        }
+    }
+    return count;
+}
+
+void grrl_joints_update(struct grrl_perception *p)
+{
+    struct evidence e[GRRL_MAX_LINKS * (GRRL_MAX_LINKS - 1) / 2];
+    uint16_t n = 0;
+    for (uint8_t a = 0; a < p->n_bodies; a++) {
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
+            if (weigh(p, a, b, &e[n])) {
+                n++;
+            }
+        }
+    }
+    uint8_t accepted = choose_structure(e, n);
+    uint8_t order[GRRL_MAX_JOINTS];
+    (void)order_of_discovery(p, e, accepted, order);
+    struct grrl_model *model = &p->model;
+    model->n_bodies = p->n_bodies;
+    model->n_joints = accepted;
+    model->n_features = p->n_slots;
+    for (uint8_t i = 0; i < accepted; i++) {
+        describe_joint(p, &e[order[i]], &model->joint[i]);
+    }
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        uint8_t body = p->body_of[i];
+        bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].mass > 0.0f;
+        model->feature_id[i] = p->id[i];
+        model->feature_body[i] = body;
+        model->feature_m[i] =
+            in_body ? grrl_transform(p->pose[p->n_keyframes - 1][body].pose, p->shape[i])
+                    : p->last[i];
+    }
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        describe_body(p, b, &model->body[b], model);
+    }
+}

@@ -1,0 +1,182 @@
+#include "object.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "kinematics.hpp"
+#include "object_file.hpp"
+
+namespace grrl_sim
+{
+
+namespace
+{
+
+constexpr uint16_t term_capacity = 1024;
+
+std::string name_text(const grrl_name &name)
+{
+    const char *letter = "?";
+    switch (name.kind) {
+    case GRRL_NAME_LINK:
+        letter = "l";
+        break;
+    case GRRL_NAME_FEATURES:
+        letter = "f";
+        break;
+    case GRRL_NAME_VARIABLE:
+        letter = "v";
+        break;
+    case GRRL_NAME_BACKGROUND:
+        return "lb";
+    default:
+        break;
+    }
+    return letter + std::to_string(name.number);
+}
+
+std::string at_position(const TermPosition &position, const std::string &message)
+{
+    return std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + message;
+}
+
+} // namespace
+
+LinkSpec default_link(grrl_property size)
+{
+    LinkSpec link;
+    link.size = size;
+    if (size == GRRL_PROPERTY_SMALL)
+        link.half_length_m = small_half_length_m;
+    else if (size == GRRL_PROPERTY_LARGE)
+        link.half_length_m = large_half_length_m;
+    link.mass_kg *= link.half_length_m / LinkSpec{}.half_length_m; /* as if cut from one bar */
+    set_feature_range(link);
+    return link;
+}
+
+void set_feature_range(LinkSpec &link)
+{
+    constexpr int fewest = 6;
+    const LinkSpec standard;
+    double area =
+        link.half_length_m * link.half_width_m / (standard.half_length_m * standard.half_width_m);
+    link.features_min = std::clamp(static_cast<int>(8.0 * area + 0.5), fewest, 24);
+    link.features_max = std::clamp(static_cast<int>(14.0 * area + 0.5), fewest + 4, 36);
+}
+
+JointSpec default_joint(grrl_joint_type type, int a, int b)
+{
+    bool turns = type == GRRL_REVOLUTE;
+    JointSpec joint;
+    joint.type = type;
+    joint.a = a;
+    joint.b = b;
+    joint.upper = turns ? revolute_limit_rad : prismatic_limit_m;
+    joint.lower = -joint.upper;
+    joint.friction = turns ? revolute_friction_n_m : prismatic_friction_n;
+    joint.initial_upper = turns ? revolute_initial_rad : prismatic_initial_m;
+    joint.initial_lower = -joint.initial_upper;
+    return joint;
+}
+
+Result<ObjectSpec> object_from_chain(const std::string &letters)
+{
+    ObjectSpec object;
+    grrl_graph_clear(&object.truth);
+    if (letters.empty())
+        return Result<ObjectSpec>::bad("an empty chain; write one letter R or P for each joint");
+    for (size_t i = 0; i < letters.size(); i++) {
+        if (letters[i] != 'R' && letters[i] != 'P')
+            return Result<ObjectSpec>::bad(
+                at_position({1, static_cast<unsigned>(i + 1)},
+                            std::string("a chain has no letter '") + letters[i] +
+                                "'; R is a revolute and P a prismatic joint, such as RPRPRPR"));
+    }
+    if (letters.size() + 1 > GRRL_MAX_LINKS)
+        return Result<ObjectSpec>::bad("a chain of " + std::to_string(letters.size()) +
+                                       " joints has " + std::to_string(letters.size() + 1) +
+                                       " links; this build holds at most " +
+                                       std::to_string(GRRL_MAX_LINKS) + " (GRRL_MAX_LINKS)");
+    for (size_t i = 0; i <= letters.size(); i++) {
+        uint8_t index = 0;
+        if (grrl_graph_add_link(&object.truth, 0, &index) != GRRL_OK)
+            return Result<ObjectSpec>::bad("the graph of the chain is full");
+        object.links.push_back(default_link(0));
+        object.links.back().name = "l" + std::to_string(i + 1);
+    }
+    for (size_t i = 0; i < letters.size(); i++) {
+        grrl_joint_type type = letters[i] == 'R' ? GRRL_REVOLUTE : GRRL_PRISMATIC;
+        int a = static_cast<int>(i);
+        if (grrl_graph_add_joint(&object.truth, static_cast<uint8_t>(a),
+                                 static_cast<uint8_t>(a + 1), type) != GRRL_OK)
+            return Result<ObjectSpec>::bad("the graph of the chain is full");
+        object.joints.push_back(default_joint(type, a, a + 1));
+    }
+    std::string problem = finish_object(object);
+    return problem.empty() ? Result<ObjectSpec>::good(object) : Result<ObjectSpec>::bad(problem);
+}
+
+Result<ObjectSpec> links_and_joints(const std::string &text, TermPosition *error_position)
+{
+    std::vector<struct grrl_term_node> nodes(term_capacity);
+    grrl_term_store store;
+    grrl_term_store_init(&store, nodes.data(), term_capacity);
+    grrl_term term = 0;
+    grrl_term_error error;
+    std::memset(&error, 0, sizeof error);
+    ObjectSpec object;
+    grrl_name names[GRRL_MAX_LINKS];
+    grrl_edge edges[GRRL_MAX_JOINTS];
+    uint8_t n_edges = 0;
+    grrl_status status = grrl_term_parse(&store, text.data(), text.size(), &term, &error);
+    if (status == GRRL_OK)
+        status = grrl_graph_from_term(&store, term, &object.truth, names, edges, &n_edges, &error);
+    if (status != GRRL_OK) {
+        *error_position = {std::max(error.line, 1u), std::max(error.column, 1u)};
+        return Result<ObjectSpec>::bad(error.message[0] != '\0' ? error.message
+                                                                : grrl_status_text(status));
+    }
+    for (int i = 0; i < object.truth.n; i++) {
+        LinkSpec link = default_link(static_cast<grrl_property>(object.truth.label[i] & 0xff));
+        link.name = name_text(names[i]);
+        link.fixed = names[i].kind == GRRL_NAME_BACKGROUND;
+        object.links.push_back(link);
+    }
+    for (int j = 0; j < n_edges; j++)
+        object.joints.push_back(
+            default_joint(static_cast<grrl_joint_type>(edges[j].type), edges[j].a, edges[j].b));
+    return Result<ObjectSpec>::good(object);
+}
+
+Result<ObjectSpec> object_from_term(const std::string &text)
+{
+    TermPosition position;
+    Result<ObjectSpec> object = links_and_joints(text, &position);
+    if (!object)
+        return Result<ObjectSpec>::bad(at_position(position, object.error));
+    std::string problem = finish_object(*object.value);
+    return problem.empty() ? object : Result<ObjectSpec>::bad(problem);
+}
+
+Result<ObjectSpec> object_from_text(const std::string &text)
+{
+    bool relational = text.find_first_of("(&") != std::string::npos;
+    bool path = text.find_first_of("./\\") != std::string::npos;
+    bool capitals =
+        !text.empty() && text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
+    if (relational)
+        return object_from_term(text);
+    if (path)
+        return object_from_file(text);
+    if (capitals || text.empty())
+        return object_from_chain(text);
+    Result<ObjectSpec> object = object_from_term(text);
+    if (!object)
+        object.error = "'" + text +
+                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
+                       object.error;
+    return object;
+}
+
+} // namespace grrl_sim

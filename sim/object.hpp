@@ -1,0 +1,111 @@
+/*
+ * object.hpp: what stands on the table, described before there is any physics.
+ *
+ * object_from_text turns a description into an ObjectSpec:
+ *   RPRPRPR                       a serial chain, one letter a joint
+ *   R(l1, R(l5, R(l4, ..)))       a relational term: branches, loops, sizes, several objects
+ *   scissors.grrl                 a file with a term and dimensions (object_file.hpp)
+ * World takes an ObjectSpec. Metres, kilograms, newtons, radians throughout.
+ */
+#ifndef GRRL_SIM_OBJECT_HPP
+#define GRRL_SIM_OBJECT_HPP
+
+#include <string>
+#include <vector>
+
+#include "geometry.hpp"
+#include "grrl_c.hpp"
+#include "result.hpp"
+
+namespace grrl_sim
+{
+
+/* A link: a rectangle whose frame has its origin in the centre and x along the link. */
+struct LinkSpec {
+    std::string name;
+    double half_length_m = 0.065;
+    double half_width_m = 0.0175;
+    double mass_kg = 0.13;
+    grrl_property size = 0; /* 0, GRRL_PROPERTY_SMALL or GRRL_PROPERTY_LARGE */
+    bool fixed = false;     /* lb: glued to the table, and neither seen nor touched */
+    int features_min = 8;   /* its number of features is drawn between these two */
+    int features_max = 14;
+};
+
+/*
+ * A joint. At value 0 the two anchors coincide and b is turned by angle_rad against a. The value of
+ * a revolute joint (rad) turns b about the anchor, that of a prismatic joint (m) slides b's anchor
+ * along the axis.
+ */
+struct JointSpec {
+    grrl_joint_type type = GRRL_REVOLUTE;
+    int a = 0;
+    int b = 0;
+    Vec2 anchor_a_m; /* in a's frame */
+    Vec2 anchor_b_m; /* in b's frame */
+    double angle_rad = 0.0;
+    double axis_rad = 0.0; /* of sliding, in a's frame */
+    double lower = 0.0;
+    double upper = 0.0;
+    double friction = 0.0;      /* N m or N, Coulomb */
+    double initial_lower = 0.0; /* the value at the start is drawn between these two */
+    double initial_upper = 0.0;
+    bool given = false; /* a file fixed the geometry: no layout of ours may change it */
+};
+
+struct ObjectSpec {
+    std::vector<LinkSpec> links;   /* link i is vertex i of truth */
+    std::vector<JointSpec> joints; /* each joint of truth once */
+    grrl_graph truth;
+};
+
+/*
+ * The defaults of links and joints. A joint moves only if the table holds the part beyond it more
+ * firmly than the joint does: one link is held by 0.4 * 0.13 kg * g = 0.5 N, or 3.3 N cm about its
+ * end. With these frictions random pushes move every joint of RPRPRPR within about 11 pushes; with
+ * 6 N cm and 2 N the joints near the ends hardly ever move. One push at a loop must move at least
+ * four joints at once, so that those are looser.
+ */
+constexpr double small_half_length_m = 0.045;
+constexpr double large_half_length_m = 0.085;
+constexpr double revolute_limit_rad = radians(120.0);
+constexpr double revolute_initial_rad = radians(20.0);
+constexpr double revolute_friction_n_m = 0.02;
+constexpr double prismatic_limit_m = 0.03;
+constexpr double prismatic_initial_m = 0.015;
+constexpr double prismatic_friction_n = 0.6;
+constexpr double loop_friction_share = 1.0 / 3.0;
+
+/* A link without a name, of a size, with the features that suit its length. */
+LinkSpec default_link(grrl_property size);
+
+/* Sets the range of features by the area of the link: about 11 on a standard one, at least 6. */
+void set_feature_range(LinkSpec &link);
+
+/* A joint without geometry, with the limits and friction of its type. */
+JointSpec default_joint(grrl_joint_type type, int a, int b);
+
+/* n letters R and P are n joints between n + 1 links in a row. */
+Result<ObjectSpec> object_from_chain(const std::string &letters);
+
+/* Any term that is a kinematic structure; errors carry line and column. */
+Result<ObjectSpec> object_from_term(const std::string &term);
+
+/* A chain, a term, or else the path of a file. */
+Result<ObjectSpec> object_from_text(const std::string &text);
+
+/*
+ * Parts of object_from_term, for object_file.cpp: the links and joints of a term with default
+ * dimensions and no geometry yet (a prefix such as "file:3:" may be put before its errors by the
+ * caller), and then the geometry and the checks of loops.
+ */
+struct TermPosition {
+    unsigned line = 1;
+    unsigned column = 1;
+};
+Result<ObjectSpec> links_and_joints(const std::string &term, TermPosition *error_position);
+std::string finish_object(ObjectSpec &object);
+
+} // namespace grrl_sim
+
+#endif

@@ -1,0 +1,48 @@
+/*
+ * push.hpp: what a robot may be told to do, and what came of it. Metres, newtons, seconds on the
+ * table plane; no link has a name here.
+ */
+#ifndef GRRL_SIM_PUSH_HPP
+#define GRRL_SIM_PUSH_HPP
+
+#include <string>
+
+#include "geometry.hpp"
+
+namespace grrl_sim
+{
+
+/* The finger comes down at start, goes straight to end, and stops `travel` after it touches. */
+struct PushCommand {
+    Vec2 start_m;                /* on the table or at most 0.5 m beside it, like end */
+    Vec2 end_m;                  /* at least 1 mm from start */
+    double speed_m_s = 0.08;     /* above 0, at most 0.5 */
+    double force_limit_n = 10.0; /* above 0, at most 10 */
+    double travel_m = 0.03;      /* after the first contact, above 0, at most 0.5 */
+    double timeout_s = 2.5;      /* above 0, at most 10 */
+};
+
+enum class PushReason {
+    REACHED, /* touched something and went on for its travel, or to the end of the line */
+    MISSED,  /* came to the end of the line and touched nothing */
+    BLOCKED, /* 0.3 s without progress at the force limit, or no free place to come down */
+    TIMEOUT
+};
+
+struct PushResult {
+    PushReason reason = PushReason::MISSED;
+    bool touched = false;
+    double duration_s = 0.0;
+    double travelled_m = 0.0; /* after the first contact */
+    Vec2 from_m;              /* where the finger came down .. */
+    Vec2 to_m;                /* .. and where it was lifted */
+};
+
+const char *push_reason_text(PushReason reason);
+
+/* Empty if the command can be carried out, else what is wrong and what would be right. */
+std::string check_push(const PushCommand &command, Vec2 table_m);
+
+} // namespace grrl_sim
+
+#endif

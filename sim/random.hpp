@@ -1,0 +1,59 @@
+/*
+ * random.hpp: the library's random numbers with the distributions a simulation needs.
+ *
+ * One stream for each purpose, so that drawing more of one does not shift another.
+ */
+#ifndef GRRL_SIM_RANDOM_HPP
+#define GRRL_SIM_RANDOM_HPP
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "grrl_c.hpp"
+
+namespace grrl_sim
+{
+
+enum class Stream : uint64_t { OBJECT = 1, PUSH = 2, NOISE = 3 };
+
+class Random
+{
+public:
+    Random(uint64_t seed, Stream stream)
+    {
+        grrl_random_init(&state_, seed, static_cast<uint64_t>(stream));
+    }
+
+    double uniform() { return static_cast<double>(grrl_random_uniform(&state_)); }
+    double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+    /* 0 .. count - 1 */
+    int below(int count)
+    {
+        return static_cast<int>(grrl_random_below(&state_, static_cast<uint32_t>(count)));
+    }
+
+    /* Mean 0, variance 1: twelve uniforms, which unlike Box-Muller are the same on every machine.
+     */
+    double normal()
+    {
+        double sum = -6.0;
+        for (int i = 0; i < 12; i++)
+            sum += uniform();
+        return sum;
+    }
+
+    template <typename T> void shuffle(std::vector<T> &items)
+    {
+        for (size_t i = items.size(); i > 1; i--)
+            std::swap(items[i - 1], items[static_cast<size_t>(below(static_cast<int>(i)))]);
+    }
+
+private:
+    grrl_random state_;
+};
+
+} // namespace grrl_sim
+
+#endif

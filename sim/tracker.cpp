@@ -1,0 +1,137 @@
+#include "tracker.hpp"
+
+namespace grrl_sim
+{
+
+namespace
+{
+
+constexpr int placing_attempts = 60;
+constexpr double edge_m = 0.002;             /* features keep off the edge of a link .. */
+constexpr double background_margin_m = 0.01; /* .. and background features off the object */
+constexpr double background_distance_m = 0.05;
+
+/* A point at least `apart` from the others if one is found, the apartest one tried if not. */
+template <typename Draw, typename Apart> Vec2 spread_point(Draw draw, Apart distance, double apart)
+{
+    Vec2 best;
+    double best_distance = -1.0;
+    for (int attempt = 0; attempt < placing_attempts && best_distance < apart; attempt++) {
+        Vec2 point = draw();
+        double d = distance(point);
+        if (d > best_distance) {
+            best = point;
+            best_distance = d;
+        }
+    }
+    return best;
+}
+
+} // namespace
+
+Tracker::Tracker(const ObjectSpec &object, const TrackerParams &params, Vec2 table_m,
+                 const std::vector<Pose> &poses, Random &random)
+    : links_(object.links), params_(params)
+{
+    std::vector<int> counts;
+    int total = 0;
+    for (const LinkSpec &link : links_) {
+        int range = link.features_max - link.features_min + 1;
+        counts.push_back(link.fixed ? 0 : link.features_min + random.below(range));
+        total += counts.back();
+    }
+    for (size_t i = 0; i < links_.size(); i++) {
+        if (total > GRRL_MAX_FEATURES) /* what one tracker follows at a time */
+            counts[i] = counts[i] * GRRL_MAX_FEATURES / total;
+        place_on_link(static_cast<int>(i), counts[i], random);
+    }
+    place_on_table(table_m, poses, random);
+    random.shuffle(features_);
+}
+
+void Tracker::place_on_link(int link, int count, Random &random)
+{
+    const LinkSpec &spec = links_[static_cast<size_t>(link)];
+    double x = spec.half_length_m - edge_m;
+    double y = spec.half_width_m - edge_m;
+    size_t first = features_.size();
+    for (int i = 0; i < count; i++) {
+        auto draw = [&]() {
+            double px = random.uniform(-x, x);
+            return Vec2{px, random.uniform(-y, y)};
+        };
+        auto nearest = [&](Vec2 point) {
+            double least = 1.0;
+            for (size_t k = first; k < features_.size(); k++)
+                least = std::min(least, length(features_[k].place_m - point));
+            return least;
+        };
+        features_.push_back({link, spread_point(draw, nearest, params_.feature_distance_m)});
+    }
+}
+
+void Tracker::place_on_table(Vec2 table_m, const std::vector<Pose> &poses, Random &random)
+{
+    size_t first = features_.size();
+    int room = GRRL_MAX_FEATURES - static_cast<int>(first);
+    for (int i = 0; i < std::min(params_.background_features, room); i++) {
+        auto draw = [&]() {
+            double px = random.uniform(-0.5, 0.5) * table_m.x;
+            return Vec2{px, random.uniform(-0.5, 0.5) * table_m.y};
+        };
+        auto nearest = [&](Vec2 point) {
+            double least = covered(point, poses, background_margin_m) ? -1.0 : 1.0;
+            for (size_t k = first; k < features_.size(); k++)
+                least = std::min(least, length(features_[k].place_m - point));
+            return least;
+        };
+        Vec2 point = spread_point(draw, nearest, background_distance_m);
+        if (!covered(point, poses, background_margin_m))
+            features_.push_back({-1, point});
+    }
+}
+
+bool Tracker::covered(Vec2 point, const std::vector<Pose> &poses, double margin_m) const
+{
+    for (size_t i = 0; i < links_.size(); i++) {
+        if (links_[i].fixed)
+            continue;
+        double reach = links_[i].half_length_m + links_[i].half_width_m + margin_m;
+        Vec2 offset = point - poses[i].position;
+        if (dot(offset, offset) > reach * reach)
+            continue;
+        Rectangle shape{poses[i], links_[i].half_length_m, links_[i].half_width_m};
+        if (distance(shape, point) <= margin_m)
+            return true;
+    }
+    return false;
+}
+
+Vec2 Tracker::true_position(uint32_t id, const std::vector<Pose> &poses) const
+{
+    const Feature &feature = features_[id];
+    if (feature.link < 0)
+        return feature.place_m;
+    return transform(poses[static_cast<size_t>(feature.link)], feature.place_m);
+}
+
+void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &frame) const
+{
+    frame.features.clear();
+    for (uint32_t id = 0; id < features_.size(); id++) {
+        Vec2 point = true_position(id, poses);
+        if (features_[id].link < 0 && covered(point, poses, 0.0))
+            continue;
+        if (params_.dropout_probability > 0.0 && noise.uniform() < params_.dropout_probability)
+            continue;
+        if (params_.outlier_probability > 0.0 && noise.uniform() < params_.outlier_probability) {
+            double reach = noise.uniform(0.0, params_.outlier_reach_m);
+            point = point + reach * direction(noise.uniform(-pi, pi));
+        }
+        double x = point.x + params_.noise_sigma_m * noise.normal();
+        double y = point.y + params_.noise_sigma_m * noise.normal();
+        frame.features.push_back({id, x, y});
+    }
+}
+
+} // namespace grrl_sim

@@ -1,0 +1,122 @@
+#!/bin/sh
+# grrl-term by its exact output and exit status: term_tool.sh PATH_OF_GRRL_TERM VERSION
+tool=$1
+version=$2
+failures=0
+
+# expect STATUS OUTPUT ARGUMENT...: standard output and standard error together
+expect() {
+    status=$1
+    output=$2
+    shift 2
+    actual=$("$tool" "$@" 2>&1)
+    actual_status=$?
+    if [ "$actual" != "$output" ] || [ "$actual_status" -ne "$status" ]; then
+        printf 'grrl-term %s\nexpected (%s):\n%s\nactual (%s):\n%s\n\n' \
+            "$*" "$status" "$output" "$actual_status" "$actual"
+        failures=$((failures + 1))
+    fi
+}
+
+usage='usage: grrl-term parse TERM
+       grrl-term graph [--dot] TERM
+       grrl-term canonical [--ignore-properties] TERM
+       grrl-term match [--all] A B
+       grrl-term --help | --version'
+
+expect 0 "grrl-term $version" --version
+
+# parse
+expect 0 'D(lb, R(L(s, f1), f2))' parse ' D( lb,R(L(s ,f1),f2) )'
+expect 0 'A(v3, 45)' parse 'A(v3, 45°)'
+expect 0 'R(l1, l2)' parse - <<'END'
+R(l1,
+  l2)
+END
+expect 1 "grrl-term: 1:6: expected ',', ')' or '&' after an argument of a relation, found 'l2'
+  R(l1 l2)
+       ^" parse 'R(l1 l2)'
+expect 1 "grrl-term: 2:6: expected ')' after the direction of an action, found 'x'
+  	45° x)
+  	    ^" parse 'A(f1,
+	45° x)'
+expect 1 "grrl-term: 1:8: expected ',', ')' or '&' after an argument of a relation, found the end of the text
+  R(l1,l2
+         ^" parse - <<'END'
+R(l1,l2
+END
+
+# graph
+expect 0 'link f3 s
+link f1
+link f2 l _ red
+joint P f1 f2
+joint R f3 f1' graph 'D(lb, R(L(s, f3), P(f1, L(l, _, red, f2))))'
+expect 0 'graph structure {
+  f1 [label="f1 s"];
+  lb [label="lb"];
+  f1 -- lb [label="R"];
+}' graph --dot 'R(L(s, f1), lb)'
+expect 1 'grrl-term: link l1 is joined to itself' graph 'R(l1, l1)'
+expect 1 'grrl-term: an action is no structure' graph 'A(l1, 90)'
+
+# canonical: the wooden toy, written in two ways
+toy='R(v2, R(v4, P(v3, v1)))
+hash d3865b00'
+expect 0 "$toy" canonical 'D(lb, R(l4, R(l3, P(l1, l2))))'
+expect 0 "$toy" canonical 'D(P(l4, R(R(l1, l2), l3)), lb)'
+expect 0 "$toy" canonical --ignore-properties 'R(L(s, f4), R(L(s, f3), P(L(l, f1), L(s, f2))))'
+expect 0 'D(v1, R(lb, L(s, v2)))
+hash 4dce33ed' canonical 'R(L(s, f1), lb) & f2'
+
+# match: the example of the paper's section V-D, and sub-structures
+expect 0 'isomorphic, ignoring property 1
+f1 <-> v1
+f2 <-> v2
+f3 <-> v3' match 'R(R(L(l, f1), L(s, f2)), L(l, f3))' 'R(R(L(s, v1), L(s, v2)), L(s, v3))'
+expect 0 'isomorphic
+f1 <-> v3
+f2 <-> v2
+or
+f1 <-> v2
+f2 <-> v3' match --all 'R(f1, f2)' 'R(v3, v2)'
+expect 0 'A is a sub-structure of B
+f1 <-> l2
+f2 <-> l3' match 'R(f1, f2)' 'P(l1, R(l2, l3))'
+expect 0 'B is a sub-structure of A, ignoring properties 2 1
+f1 <-> l1
+f2 <-> l2' match 'R(P(L(s, red, f1), f2), f3)' 'P(L(l, l1), l2)'
+expect 1 'no match' match 'R(l1, l2)' 'P(l1, l2)'
+expect 1 'grrl-term: 1:1: expected a link or one of R, P, D, A, found '"'x'"'
+  x
+  ^' match l1 x
+
+# usage
+expect 2 "grrl-term: a command is missing
+$usage"
+expect 2 "grrl-term: unknown command pares
+$usage" pares l1
+expect 2 "grrl-term: unknown option --dot
+$usage" parse --dot l1
+expect 2 "grrl-term: too few terms for match
+$usage" match l1
+expect 2 "grrl-term: one term too many: l2
+$usage" parse l1 l2
+expect 2 "grrl-term: only one term can come from standard input
+$usage" match - -
+
+help=$("$tool" --help) || failures=$((failures + 1))
+for word in parse graph canonical match --dot --ignore-properties --all 'Exit status'; do
+    case $help in
+    *"$word"*) ;;
+    *)
+        echo "--help says nothing of $word"
+        failures=$((failures + 1))
+        ;;
+    esac
+done
+
+[ "$failures" -eq 0 ] || {
+    echo "$failures failures"
+    exit 1
+}
