@@ -1,9 +1,11 @@
 /* Perception against worlds whose links and motions are known. */
-#include <cmocka.h>
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#include <cmocka.h>
 
 #include "kinematic_world.h"
 
