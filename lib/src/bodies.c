@@ -13,14 +13,16 @@
 
 #include <string.h>
 
-#define COST_CAP 16.0f     /* of one squared residual: an outlier weighs no more */
-#define SEED_NEIGHBOURS 3  /* with the seed: the smallest group whose pose is worth something */
+#define COST_CAP 16.0f    /* of one squared residual: an outlier weighs no more */
+#define SEED_NEIGHBOURS 3 /* with the seed: the smallest group whose pose is worth something */
 #define SEEDS_MAX 48
-#define SPLIT_KEYFRAMES 10 /* that tell most, used to score hypotheses */
-#define SPLIT_SIGMAS 4.5f  /* misfit of a whole body, in standard deviations of chi squared */
-#define INLIER_COST 3.5f   /* mean squared residual of a member; 2 is expected */
-#define MERGE_FREE 12.0f   /* chi squared a keyframe's separate pose must save: 3 parameters */
-#define MERGE_EVIDENCE 15.0f /* and how much more in all keyframes together */
+#define SPLIT_KEYFRAMES 10  /* that tell most, used to score hypotheses */
+#define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
+#define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
+#define INLIER_COST 3.5f    /* mean squared residual of a member; 2 is expected */
+#define REASSIGN_ROUNDS 6
+#define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
+#define MERGE_EVIDENCE 40.0f /* and how much more in all keyframes together */
 
 /* Density: the first look. */
 
@@ -405,8 +407,8 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
             }
             const struct grrl_perception_pose *own = body_of[slot] == a ? pa : pb;
             float scale = 1.0f / grrl_keyframe_variance(p, w);
-            float together =
-                scale * distance2(p->keyframe[k].point[slot], grrl_transform(poses[k].pose, shape[slot]));
+            float together = scale * distance2(p->keyframe[k].point[slot],
+                                               grrl_transform(poses[k].pose, shape[slot]));
             float alone = scale * distance2(p->keyframe[k].point[slot],
                                             grrl_transform(own->pose, p->shape[slot]));
             saved += (together < 100.0f ? together : 100.0f) - (alone < 100.0f ? alone : 100.0f);
@@ -497,8 +499,9 @@ static void merge_bodies(struct grrl_perception *p)
 
 /* Reassigning. */
 
-static void reassign(struct grrl_perception *p)
+static bool reassign_once(struct grrl_perception *p)
 {
+    bool changed = false;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint8_t own = p->body_of[i];
         uint8_t best = GRRL_FEATURE_NONE;
@@ -512,8 +515,7 @@ static void reassign(struct grrl_perception *p)
             if (own == GRRL_FEATURE_BACKGROUND && p->blob_of[i] == 0) {
                 break; /* decided below: the background moves with nothing */
             }
-            float cost =
-                grrl_rigid_cost(p, i, local, &p->pose[0][b], GRRL_MAX_LINKS, COST_CAP, &n);
+            float cost = grrl_rigid_cost(p, i, local, &p->pose[0][b], GRRL_MAX_LINKS, COST_CAP, &n);
             float excess = cost - cost_limit(n) - (b == own ? 2.0f : 0.0f);
             if (n > 0 && excess < best_excess) {
                 best = b;
@@ -526,10 +528,19 @@ static void reassign(struct grrl_perception *p)
         if (never_moved && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
             best = GRRL_FEATURE_BACKGROUND;
         }
+        changed = changed || p->body_of[i] != best;
         p->body_of[i] = best;
     }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
+    for (uint8_t b = 0; b < p->n_bodies && changed; b++) {
         fit_body(p, b);
+    }
+    return changed;
+}
+
+/* Features to the body they move with, poses to the features, until nothing changes. */
+static void reassign(struct grrl_perception *p)
+{
+    for (int round = 0; round < REASSIGN_ROUNDS && reassign_once(p); round++) {
     }
 }
 
@@ -544,6 +555,51 @@ static void dissolve_small(struct grrl_perception *p)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
             }
             remove_body(p, b--);
+        }
+    }
+}
+
+/*
+ * Whether a feature would be no worse off in some other body. A body of n features follows their
+ * noise with its own pose, which saves it a share of about 3 / (2 n) of each residual.
+ */
+static bool fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own)
+{
+    uint16_t n;
+    uint8_t own = p->body_of[slot];
+    float own_cost =
+        grrl_rigid_cost(p, slot, p->shape[slot], &p->pose[0][own], GRRL_MAX_LINKS, COST_CAP, &n);
+    float leverage = 1.5f / (float)n_own;
+    float allowed = own_cost + ELSEWHERE_COST +
+                    2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        struct grrl_vec2 local;
+        if (b != own && grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
+            grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, COST_CAP, &n) <=
+                allowed) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Features beside a joint move with either link and can pose as a body of their own: a body is
+ * real only if enough of its features fit nowhere else. */
+static void dissolve_redundant(struct grrl_perception *p)
+{
+    for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
+        uint16_t slots[GRRL_MAX_FEATURES];
+        uint16_t n = grrl_body_slots(p, b, slots);
+        uint16_t unique = 0;
+        for (uint16_t i = 0; i < n && unique < p->config.min_features; i++) {
+            unique = (uint16_t)(unique + (fits_elsewhere(p, slots[i], n) ? 0 : 1));
+        }
+        if (unique < p->config.min_features) {
+            for (uint16_t i = 0; i < n; i++) {
+                p->body_of[slots[i]] = GRRL_FEATURE_NONE;
+            }
+            remove_body(p, b--);
+            reassign(p);
         }
     }
 }
@@ -623,4 +679,5 @@ void grrl_bodies_update(struct grrl_perception *p)
     merge_bodies(p);
     reassign(p);
     dissolve_small(p);
+    dissolve_redundant(p);
 }

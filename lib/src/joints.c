@@ -37,9 +37,9 @@ struct motion {
 
 /* How well a joint type explains a motion. */
 struct fit {
-    float excess;  /* chi squared beyond its expectation */
-    bool excited;  /* the motion is large enough to tell */
-    float lower;   /* excursion from the first keyframe */
+    float excess; /* chi squared beyond its expectation */
+    bool excited; /* the motion is large enough to tell */
+    float lower;  /* excursion from the first keyframe */
     float upper;
     struct grrl_vec2 in_a;
     struct grrl_vec2 in_b;
@@ -88,9 +88,9 @@ static float point_variance(const struct grrl_perception *p, const struct motion
                             const struct relative *r, float lever_a2, float lever_b2)
 {
     float model = p->config.model_error_m;
-    return motion->noise2 *
-               (1.0f / r->pa->mass + 1.0f / r->pb->mass +
-                0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) + lever_b2 / (r->pb->inertia + 1e-9f))) +
+    return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
+                             0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
+                                     lever_b2 / (r->pb->inertia + 1e-9f))) +
            2.0f * model * model;
 }
 
@@ -105,8 +105,7 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)
 {
-    return grrl_atan2(r->s * motion->c0 - r->c * motion->s0,
-                      r->c * motion->c0 + r->s * motion->s0);
+    return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
 }
 
 /* Half the extent of a body's features. */
@@ -208,8 +207,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
     for (uint8_t k = 0; k < motion->n; k++) {
         float wk = 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
         w += wk;
-        mean = grrl_vec2_add(mean,
-                             grrl_vec2_scale(slide_point(motion, &motion->at[k], middle), wk));
+        mean =
+            grrl_vec2_add(mean, grrl_vec2_scale(slide_point(motion, &motion->at[k], middle), wk));
     }
     mean = grrl_vec2_scale(mean, 1.0f / w);
     float xx = 0.0f;
@@ -268,19 +267,25 @@ static float free_cost(const struct grrl_perception *p, const struct motion *mot
     return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
 }
 
-/* The nearest feature of a body to a point in its frame. */
-static float distance_to_body(const struct grrl_perception *p, uint8_t body,
-                              struct grrl_vec2 local)
+/* The distance from a point in a body's frame to its third nearest feature: a few features beside
+ * a joint may be counted to the wrong body. */
+static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
 {
-    float best2 = 1e9f;
+    float nearest2[3] = {1e9f, 1e9f, 1e9f};
     for (uint16_t i = 0; i < p->n_slots; i++) {
         if (p->body_of[i] == body) {
             struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
             float d2 = grrl_vec2_dot(d, d);
-            best2 = d2 < best2 ? d2 : best2;
+            for (int at = 0; at < 3; at++) {
+                if (d2 < nearest2[at]) {
+                    float t = nearest2[at];
+                    nearest2[at] = d2;
+                    d2 = t;
+                }
+            }
         }
     }
-    return grrl_sqrt(best2);
+    return grrl_sqrt(nearest2[2]);
 }
 
 /* Distance between the nearest features of two bodies in keyframe k. */
@@ -299,7 +304,8 @@ static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, 
     return best;
 }
 
-/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends. */
+/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
+ */
 static bool is_near(const struct grrl_perception *p, const struct evidence *e)
 {
     float gap = p->config.gap_m;

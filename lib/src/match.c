@@ -7,7 +7,13 @@
 
 enum { FINISHED = -1 };
 
-static unsigned degree(const struct grrl_graph *graph, int type, uint8_t vertex)
+/* As grrl_graph_neighbours, without a call in the innermost loops. */
+static inline uint32_t neighbours_of(const struct grrl_graph *graph, uint8_t vertex)
+{
+    return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
+}
+
+static inline unsigned degree(const struct grrl_graph *graph, int type, uint8_t vertex)
 {
     return grrl_bit_count(graph->joined[type][vertex]);
 }
@@ -68,36 +74,37 @@ static void restrict_labels(struct grrl_match *match, grrl_label mask)
 }
 
 /*
- * Orders the pattern: each vertex a neighbour of earlier ones where there is one, with the most
- * earlier neighbours, then the fewest compatible targets, then the most joints.
+ * Orders the pattern: each vertex a neighbour of earlier ones where there is one, of several of
+ * them if possible, then the fewest compatible targets, then the most joints.
  */
 static void order_pattern(struct grrl_match *match)
 {
     const struct grrl_graph *pattern = match->pattern;
-    uint32_t rest[GRRL_MAX_LINKS]; /* smaller is better: compatible targets, then few joints last */
+    uint32_t rank[GRRL_MAX_LINKS]; /* smaller comes first; the vertex is in the lowest byte, so that
+                                      the smallest is found without a branch */
     for (uint8_t v = 0; v < pattern->n; v++)
-        rest[v] = grrl_bit_count(match->compatible[v]) * 64u + 32u -
-                  grrl_bit_count(grrl_graph_neighbours(pattern, v));
+        rank[v] = grrl_bit_count(match->compatible[v]) << 16 |
+                  (32u - grrl_bit_count(neighbours_of(pattern, v))) << 8 | v;
     uint32_t placed = 0;
-    uint32_t frontier = 0;
+    uint32_t frontier = 0; /* neighbours of placed vertices, */
+    uint32_t tied = 0;     /* and of them those of two or more */
     for (uint8_t depth = 0; depth < pattern->n; depth++) {
-        uint32_t choices = frontier != 0 ? frontier : grrl_bits_below(pattern->n) & ~placed;
-        uint8_t best = grrl_first_bit(choices);
-        uint32_t best_rank = UINT32_MAX;
+        uint32_t choices = tied != 0 ? tied : frontier;
+        if (choices == 0)
+            choices = grrl_bits_below(pattern->n) & ~placed;
+        uint32_t smallest = UINT32_MAX;
         for (; choices != 0; choices &= choices - 1u) {
-            uint8_t v = grrl_first_bit(choices);
-            unsigned tied = grrl_bit_count(grrl_graph_neighbours(pattern, v) & placed);
-            uint32_t rank = (32u - tied) * 4096u + rest[v];
-            if (rank < best_rank) {
-                best = v;
-                best_rank = rank;
-            }
+            uint32_t other = rank[grrl_first_bit(choices)];
+            smallest = other < smallest ? other : smallest;
         }
-        uint32_t neighbours = grrl_graph_neighbours(pattern, best);
+        uint8_t best = (uint8_t)(smallest & 0xffu);
+        uint32_t neighbours = neighbours_of(pattern, best);
         match->order[depth] = best;
         match->earlier[depth] = placed;
-        match->terminal[depth] = (uint8_t)grrl_bit_count(neighbours & frontier);
+        uint32_t again = neighbours & frontier; /* none on a tree */
+        match->terminal[depth] = again == 0 ? 0 : (uint8_t)grrl_bit_count(again);
         placed |= grrl_bit(best);
+        tied = (tied | again) & ~placed;
         frontier = (frontier | neighbours) & ~placed;
     }
 }
@@ -180,7 +187,7 @@ static bool is_feasible(const struct grrl_match *match, int depth, uint8_t targe
         if (remaining != 0 && grrl_bit_count(joined & ~match->used) < grrl_bit_count(remaining))
             return false;
     }
-    uint32_t terminal = grrl_graph_neighbours(match->target, target) & match->reached[depth];
+    uint32_t terminal = neighbours_of(match->target, target) & match->reached[depth];
     unsigned needed = match->terminal[depth];
     if (exact)
         return grrl_bit_count(terminal & ~match->used) == needed;
@@ -229,8 +236,7 @@ enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
             return give_mapping(match, map);
         }
         match->used |= grrl_bit(target);
-        match->reached[depth + 1] =
-            match->reached[depth] | grrl_graph_neighbours(match->target, target);
+        match->reached[depth + 1] = match->reached[depth] | neighbours_of(match->target, target);
         depth++;
         open_depth(match, depth);
     }

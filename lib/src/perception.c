@@ -19,7 +19,7 @@ void grrl_perception_config_default(struct grrl_perception_config *config)
         .min_turn_rad = 0.05f,
         .min_slide_m = 0.0025f,
         .pivot_scale_m = 0.1f,
-        .gap_m = 0.08f,
+        .gap_m = 0.1f,
         .large_m = 0.15f,
         .min_features = 4,
     };
@@ -319,8 +319,7 @@ static bool still_sliding(const struct grrl_perception *p, const struct grrl_fra
             h = (h + 1) % size;
         }
         struct grrl_vec2 mean;
-        if (p->slot_of_hash[h] != 0 &&
-            window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean)) {
+        if (p->slot_of_hash[h] != 0 && window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean)) {
             struct grrl_vec2 d = {frame->x_m[i] - mean.x, frame->y_m[i] - mean.y};
             seen++;
             away += grrl_vec2_length(d) > 6.0f * p->config.noise_m ? 1u : 0u;

@@ -5,9 +5,12 @@
  * of the Q values met with it. States are kept in canonical form, actions on the smallest link of
  * their orbit, so that isomorphic states and symmetric actions share one entry.
  *
- * Memory is the caller's: an array of states and an array of experiences. When either is full the
- * experience least recently used (updated or recalled for a decision taken) makes room, and its
- * state with its last experience.
+ * Memory is the caller's: an array of states and an array of experiences, both filled from the
+ * front without gaps. Used means updated, or touched because a decision rests on it. When the
+ * experiences are full, the one least recently used makes room, and a state goes with its last
+ * experience; when the states are full, the one whose experiences were all used longest ago makes
+ * room, with all of them. The last of an array moves into a gap, so that an eviction may change the
+ * index of others: an index is good until the next update or load.
  */
 #ifndef GRRL_EXPERIENCE_H
 #define GRRL_EXPERIENCE_H
@@ -28,17 +31,20 @@ struct grrl_q {
 
 struct grrl_experience_state {
     /* private */
-    uint32_t hash;           /* of graph, all properties */
-    uint16_t experiences;    /* that refer to this state; 0: the slot is free */
-    struct grrl_graph graph; /* canonical */
+    uint32_t hash;                    /* of graph, all properties */
+    uint32_t shape;                   /* hash without properties */
+    uint16_t experiences;             /* that refer to this state, at least one */
+    uint16_t first;                   /* of them */
+    uint8_t joints[GRRL_JOINT_TYPES]; /* of each type */
+    struct grrl_graph graph;          /* canonical */
 };
 
 struct grrl_experience {
     /* private */
     uint16_t state;
-    uint8_t link; /* in the state's canonical graph */
+    uint16_t next; /* of the same state, or GRRL_NO_EXPERIENCE */
+    uint8_t link;  /* in the state's canonical graph, smallest of its orbit */
     uint8_t direction;
-    uint8_t in_use;
     uint32_t used_at; /* store clock */
     struct grrl_q q;
 };
@@ -66,11 +72,15 @@ enum grrl_recall_level {
 
 enum { GRRL_NO_EXPERIENCE = 0xffff };
 
+/* Far beyond any sum of rewards, and small enough that no statistic overflows. */
+#define GRRL_MAX_TARGET 1.0e6f
+
 /* What is known of one action of the current state. */
 struct grrl_recall_entry {
     uint16_t experience; /* index, or GRRL_NO_EXPERIENCE */
     uint8_t level;       /* enum grrl_recall_level */
-    uint8_t distance;    /* links and joints that only one of the two has; properties dropped */
+    uint8_t distance;    /* links and joints that only one of the two has */
+    uint8_t dropped;     /* properties dropped, counted from the last place in use */
     uint8_t stored_link; /* the stored variable that is bound to the link */
 };
 
@@ -83,7 +93,7 @@ struct grrl_recall {
 /* How far retrieval may reach. */
 struct grrl_recall_config {
     enum grrl_recall_level deepest; /* GRRL_RECALL_SUBSTRUCTURE: everything */
-    uint32_t budget;                /* search steps for one stored state */
+    uint32_t budget;                /* search steps for one stored state, >= 1 */
 };
 
 /* Serialised reading and writing: return 0 when all `size` bytes were transferred. */
@@ -93,6 +103,7 @@ struct grrl_experience_io {
     int (*read)(void *context, void *bytes, size_t size);
 };
 
+/* Both capacities at least 1, at most 65535. */
 void grrl_experience_init(struct grrl_experience_store *store, struct grrl_experience_state *states,
                           uint16_t states_capacity, struct grrl_experience *experiences,
                           uint16_t experiences_capacity);
@@ -100,8 +111,12 @@ void grrl_experience_init(struct grrl_experience_store *store, struct grrl_exper
 /*
  * For each action of the state the closest experience: exact matches first, then properties dropped
  * one place after another from the last to the first, then sub-structures (either may be the
- * larger), fewest differing links and joints first; ties go to the entry with more targets met,
- * then to the lower index. An experience whose stored link the match does not bind is no match.
+ * larger), fewest differing links and joints first, those that agree in all properties before those
+ * that agree in none; ties go to the entry with more targets met, then to the lower index. All
+ * links some mapping binds to the stored one count; an experience whose stored link no mapping
+ * binds is no match, nor is what a search left undecided. Nothing is known of a state without a
+ * canonical form. Cost: at most budget search steps a stored state; states that cannot match, or
+ * could only repeat what a closer one said, are not searched.
  */
 void grrl_experience_recall(const struct grrl_experience_store *store,
                             const struct grrl_graph *state, const struct grrl_recall_config *config,
@@ -109,8 +124,10 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
 
 /*
  * Moves the estimate of (state, link, direction) towards a target: value <- (1 - alpha) value +
- * alpha target; a new entry starts with value = target. *index tells the entry.
- * GRRL_ERR_UNDECIDED: the state has no canonical form within the budget, nothing is stored.
+ * alpha target; a new entry starts with value = target. *index (may be NULL) tells the entry.
+ * GRRL_ERR_ARGUMENT: no such link or direction, alpha outside (0, 1]. GRRL_ERR_NUMBER: a target
+ * that is not finite or beyond +-GRRL_MAX_TARGET. GRRL_ERR_UNDECIDED: the state has no canonical
+ * form within the budget. After a failure nothing is stored.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
                                                       const struct grrl_graph *state, uint8_t link,
@@ -121,15 +138,24 @@ GRRL_MUST_USE enum grrl_status grrl_experience_update(struct grrl_experience_sto
 void grrl_experience_touch(struct grrl_experience_store *store, uint16_t index);
 
 /*
- * The store as bytes: a header (magic, version, limits), the states, the experiences, each with a
- * CRC-32, little-endian whatever the machine. Saving what was loaded gives the same bytes.
- * GRRL_ERR_IO.
+ * The store as bytes, little-endian whatever the machine. A header: magic "GRRLexp" and zero,
+ * version (2 bytes), GRRL_MAX_PROPERTIES (1), GRRL_DIRECTIONS (1), states (2), experiences (2),
+ * clock (4). A state: links (1), then for each link its label (8) and its neighbours, revolute (4)
+ * and prismatic (4). An experience: state (2), link (1), direction (1), used at (4), value (4),
+ * mean (4), deviations (4), n (4). A CRC-32 (4) follows the header and each record; it runs on from
+ * the one before, so that records cannot be exchanged either. Saving what was loaded gives the same
+ * bytes. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
                                                     const struct grrl_experience_io *io);
 
-/* Replaces the store's content. GRRL_ERR_IO (also for a file that ends early), GRRL_ERR_FORMAT,
- * GRRL_ERR_VERSION, GRRL_ERR_CORRUPT, GRRL_ERR_FULL; after a failure the store is empty. */
+/*
+ * Replaces the store's content. Nothing of a file is used before it is checked; bytes after the
+ * last record are not read. GRRL_ERR_IO: also for a file that ends early. GRRL_ERR_FORMAT: another
+ * magic. GRRL_ERR_VERSION: a newer version, other properties or directions, more links than this
+ * build has. GRRL_ERR_CORRUPT: a wrong CRC, or content that save never writes. GRRL_ERR_FULL: more
+ * records than the store has room for. After a failure the store is empty.
+ */
 GRRL_MUST_USE enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
                                                     const struct grrl_experience_io *io);
 

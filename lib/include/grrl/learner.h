@@ -42,7 +42,8 @@ struct grrl_decision {
 struct grrl_lesson {
     float reward;        /* links and joints newly revealed, plus the trial's reward at its end */
     float target;        /* r + gamma max Q(s', a') */
-    uint16_t experience; /* the entry updated, or GRRL_NO_EXPERIENCE */
+    uint16_t experience; /* the entry updated; GRRL_NO_EXPERIENCE: with the random policy, or when
+                            the state is too symmetric to have a canonical form in the budget */
 };
 
 struct grrl_learner {
@@ -53,13 +54,13 @@ struct grrl_learner {
     struct grrl_random random;
     struct grrl_graph state;    /* believed now: vertex i is body i of the model */
     struct grrl_graph acted_on; /* believed when the last choice was made */
-    struct grrl_recall recall;  /* of state */
+    struct grrl_recall recall;  /* of state, for the last choice or lesson */
     struct grrl_choice last_choice;
     uint32_t trial;
     uint32_t pushes;    /* in this trial */
     uint8_t most_links; /* revealed so far in this trial */
     uint8_t most_joints;
-    uint8_t phase;
+    uint8_t phase; /* where in the order of calls */
 };
 
 void grrl_learner_config_default(struct grrl_learner_config *config);
@@ -70,22 +71,25 @@ grrl_learner_init(struct grrl_learner *learner, const struct grrl_learner_config
                   struct grrl_experience_state *states, uint16_t states_capacity,
                   struct grrl_experience *experiences, uint16_t experiences_capacity);
 
-/* Starts with a new object or a new pose. Ends an unfinished trial as grrl_learner_abandon_trial.
+/* Starts with a new object or a new pose; the random numbers start from (seed, trial). Ends an
+ * unfinished trial as grrl_learner_abandon_trial.
  */
 void grrl_learner_begin_trial(struct grrl_learner *learner, uint32_t trial);
 
+/* Without a trial the frame is ignored. */
 void grrl_learner_observe(struct grrl_learner *learner, const struct grrl_frame *frame,
                           bool pushing);
 
-/* Brings the model and the state up to date; at rest. GRRL_ERR_NONE: nothing was seen. */
+/* Brings the model and the state up to date; at rest. GRRL_ERR_ORDER: no trial; GRRL_ERR_NONE:
+ * nothing was seen. */
 GRRL_MUST_USE enum grrl_status grrl_learner_perceive(struct grrl_learner *learner);
 
 /* Chooses the next push. GRRL_ERR_ORDER; GRRL_ERR_NONE: there is no link to push. */
 GRRL_MUST_USE enum grrl_status grrl_learner_choose(struct grrl_learner *learner,
                                                    struct grrl_decision *decision);
 
-/* Takes a push somebody else chose, so that its outcome is learned. GRRL_ERR_NONE: the model has
- * no body of this number. */
+/* Takes a push somebody else chose, so that its outcome is learned. GRRL_ERR_ORDER;
+ * GRRL_ERR_ARGUMENT: no such direction; GRRL_ERR_NONE: the model has no body of this number. */
 GRRL_MUST_USE enum grrl_status grrl_learner_adopt(struct grrl_learner *learner,
                                                   uint16_t body_number, uint8_t direction,
                                                   struct grrl_decision *decision);

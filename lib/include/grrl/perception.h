@@ -43,7 +43,7 @@ struct grrl_perception_config {
     float min_turn_rad;   /* relative rotation below this supports no joint type; 0.05 */
     float min_slide_m;    /* relative sliding below this supports no joint type; 0.0025 */
     float pivot_scale_m;  /* pivots farther than this from their bodies are unlikely; 0.1 */
-    float gap_m;          /* joined bodies come at least this close in every keyframe; 0.08 */
+    float gap_m;          /* joined bodies stay this close, three of their features; 0.1 */
     float large_m;        /* links at least this long have the property large; 0.15 */
     uint8_t min_features; /* fewer features are no body; 4 */
 };

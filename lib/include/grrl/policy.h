@@ -21,7 +21,7 @@ struct grrl_policy_config {
     float beta;                 /* exploration, >= 0; the paper's 2 */
     float z;                    /* Interval Estimation: bound = value + z sd / sqrt(n); 0.5 */
     float prior_sd;             /* sd assumed for one target, weighs as one sample; 1 */
-    float trial_reward;         /* what the end of a trial adds to the reward; 1 */
+    float trial_reward;         /* what the end of a trial adds to the reward, >= 0; 1 */
     struct grrl_recall_config recall;
 };
 
@@ -38,13 +38,16 @@ struct grrl_choice {
     uint8_t direction;
     uint8_t reason;                /* enum grrl_choice_reason */
     struct grrl_recall_entry from; /* the experience behind it, if any */
-    float value;                   /* its estimate, and the bounds of Interval Estimation */
+    float value; /* its estimate, and the bounds of Interval Estimation; 0 without experience */
     float lower;
     float upper;
-    float phi;
+    float phi; /* share of the state's actions with experience */
 };
 
 void grrl_policy_config_default(struct grrl_policy_config *config);
+
+/* The most that beta, z, prior_sd and trial_reward may be: far beyond use, far from overflow. */
+#define GRRL_POLICY_MOST 1000.0f
 
 /* GRRL_ERR_ARGUMENT for a parameter outside its range; *field, if not NULL, names it. */
 GRRL_MUST_USE enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *config,
@@ -58,6 +61,11 @@ void grrl_policy_bounds(const struct grrl_policy_config *config, const struct gr
 void grrl_policy_choose(const struct grrl_policy_config *config,
                         const struct grrl_experience_store *store, const struct grrl_recall *recall,
                         struct grrl_random *random, struct grrl_choice *choice);
+
+/* Fills in what is known of choice->link and choice->direction: from, value, lower, upper, phi. */
+void grrl_policy_explain(const struct grrl_policy_config *config,
+                         const struct grrl_experience_store *store,
+                         const struct grrl_recall *recall, struct grrl_choice *choice);
 
 /* max_a Q(s, a) over the known actions, 0 when none is known. */
 float grrl_policy_best_value(const struct grrl_experience_store *store,

@@ -1,0 +1,304 @@
+#include <string.h>
+
+#include "bits.h"
+#include "experience_private.h"
+#include "grrl/geometry.h"
+
+/* The layout is described in experience.h. */
+enum {
+    FILE_VERSION = 1,
+    HEADER_BYTES = 20,
+    CRC_BYTES = 4,
+    LINK_BYTES = 16,
+    EXPERIENCE_BYTES = 24,
+    MOST_BYTES = 1 + LINK_BYTES * GRRL_MAX_LINKS + CRC_BYTES
+};
+
+_Static_assert(MOST_BYTES >= EXPERIENCE_BYTES && MOST_BYTES >= HEADER_BYTES + CRC_BYTES,
+               "every record fits");
+_Static_assert(GRRL_JOINT_TYPES == 2, "a new joint type is a new file version");
+
+static const uint8_t magic[8] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0};
+
+/* One record on its way out of or into the file, and the CRC so far. */
+struct record {
+    const struct grrl_experience_io *io;
+    uint32_t crc;
+    size_t n;
+    uint8_t bytes[MOST_BYTES];
+};
+
+/* CRC-32 (IEEE 802.3), bit by bit: a store is small and a table would be a kilobyte. */
+static uint32_t crc_of(uint32_t crc, const uint8_t *bytes, size_t n)
+{
+    crc = ~crc;
+    for (size_t i = 0; i < n; ++i) {
+        crc ^= bytes[i];
+        for (int bit = 0; bit < 8; ++bit) {
+            crc = (crc >> 1) ^ (UINT32_C(0xedb88320) & (0u - (crc & 1u)));
+        }
+    }
+    return ~crc;
+}
+
+static void put(struct record *record, uint64_t value, unsigned bytes)
+{
+    for (unsigned i = 0; i < bytes; ++i) {
+        record->bytes[record->n++] = (uint8_t)(value >> (8 * i));
+    }
+}
+
+static void put_float(struct record *record, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(record, bits, 4);
+}
+
+static enum grrl_status write_record(struct record *record)
+{
+    record->crc = crc_of(record->crc, record->bytes, record->n);
+    put(record, record->crc, CRC_BYTES);
+    int failed = record->io->write(record->io->context, record->bytes, record->n);
+    record->n = 0;
+    return failed != 0 ? GRRL_ERR_IO : GRRL_OK;
+}
+
+enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
+                                      const struct grrl_experience_io *io)
+{
+    struct record record = {.io = io};
+    memcpy(record.bytes, magic, sizeof magic);
+    record.n = sizeof magic;
+    put(&record, FILE_VERSION, 2);
+    put(&record, GRRL_MAX_PROPERTIES, 1);
+    put(&record, GRRL_DIRECTIONS, 1);
+    put(&record, store->n_states, 2);
+    put(&record, store->n_experiences, 2);
+    put(&record, store->clock, 4);
+    enum grrl_status status = write_record(&record);
+    for (uint16_t i = 0; i < store->n_states && status == GRRL_OK; ++i) {
+        const struct grrl_graph *graph = &store->states[i].graph;
+        put(&record, graph->n, 1);
+        for (uint8_t link = 0; link < graph->n; ++link) {
+            put(&record, graph->label[link], 8);
+            put(&record, graph->joined[GRRL_REVOLUTE][link], 4);
+            put(&record, graph->joined[GRRL_PRISMATIC][link], 4);
+        }
+        status = write_record(&record);
+    }
+    for (uint16_t i = 0; i < store->n_experiences && status == GRRL_OK; ++i) {
+        const struct grrl_experience *experience = &store->experiences[i];
+        put(&record, experience->state, 2);
+        put(&record, experience->link, 1);
+        put(&record, experience->direction, 1);
+        put(&record, experience->used_at, 4);
+        put_float(&record, experience->q.value);
+        put_float(&record, experience->q.mean);
+        put_float(&record, experience->q.deviations);
+        put(&record, experience->q.n, 4);
+        status = write_record(&record);
+    }
+    return status;
+}
+
+/* Reads `bytes` more, behind what the record has, and starts taking from their beginning. */
+static enum grrl_status read_more(struct record *record, size_t bytes)
+{
+    int failed = record->io->read(record->io->context, record->bytes + record->n, bytes);
+    return failed != 0 ? GRRL_ERR_IO : GRRL_OK;
+}
+
+static uint64_t take(struct record *record, unsigned bytes)
+{
+    uint64_t value = 0;
+    for (unsigned i = 0; i < bytes; ++i) {
+        value |= (uint64_t)record->bytes[record->n++] << (8 * i);
+    }
+    return value;
+}
+
+static float take_float(struct record *record)
+{
+    uint32_t bits = (uint32_t)take(record, 4);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* Compares the CRC behind a record of `bytes` and gets ready for the next. */
+static enum grrl_status check_crc(struct record *record, size_t bytes)
+{
+    record->crc = crc_of(record->crc, record->bytes, bytes);
+    record->n = bytes;
+    bool fine = take(record, CRC_BYTES) == record->crc;
+    record->n = 0;
+    return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
+}
+
+struct header {
+    uint16_t n_states;
+    uint16_t n_experiences;
+    uint32_t clock;
+};
+
+static enum grrl_status read_header(const struct grrl_experience_store *store,
+                                    struct record *record, struct header *header)
+{
+    if (read_more(record, HEADER_BYTES + CRC_BYTES) != GRRL_OK) {
+        return GRRL_ERR_IO;
+    }
+    if (memcmp(record->bytes, magic, sizeof magic) != 0) {
+        return GRRL_ERR_FORMAT;
+    }
+    record->n = sizeof magic;
+    if (take(record, 2) != FILE_VERSION) {
+        return GRRL_ERR_VERSION;
+    }
+    bool fits = take(record, 1) == GRRL_MAX_PROPERTIES;
+    fits = take(record, 1) == GRRL_DIRECTIONS && fits;
+    header->n_states = (uint16_t)take(record, 2);
+    header->n_experiences = (uint16_t)take(record, 2);
+    header->clock = (uint32_t)take(record, 4);
+    if (check_crc(record, HEADER_BYTES) != GRRL_OK) {
+        return GRRL_ERR_CORRUPT;
+    }
+    if (!fits) {
+        return GRRL_ERR_VERSION;
+    }
+    return header->n_states <= store->states_capacity &&
+                   header->n_experiences <= store->experiences_capacity
+               ? GRRL_OK
+               : GRRL_ERR_FULL;
+}
+
+static bool is_label(grrl_label label)
+{
+    return label == GRRL_LABEL_BACKGROUND || GRRL_MAX_PROPERTIES == 8 ||
+           label >> (8 * (GRRL_MAX_PROPERTIES % 8)) == 0;
+}
+
+/* Whether the numbers read are an undirected graph with at most one joint between two links. */
+static bool is_graph(const struct grrl_graph *graph)
+{
+    for (uint8_t i = 0; i < graph->n; ++i) {
+        uint32_t revolute = graph->joined[GRRL_REVOLUTE][i];
+        uint32_t prismatic = graph->joined[GRRL_PRISMATIC][i];
+        if ((revolute & prismatic) != 0 || !is_label(graph->label[i]) ||
+            ((revolute | prismatic) & (grrl_bit(i) | ~grrl_bits_below(graph->n))) != 0) {
+            return false;
+        }
+        for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
+            for (uint8_t j = 0; j < i; ++j) {
+                if ((graph->joined[type][i] >> j & 1u) != (graph->joined[type][j] >> i & 1u)) {
+                    return false;
+                }
+            }
+        }
+    }
+    return grrl_graph_joint_count(graph) <= GRRL_MAX_JOINTS;
+}
+
+static enum grrl_status read_state(struct grrl_experience_store *store, struct record *record)
+{
+    if (read_more(record, 1) != GRRL_OK) {
+        return GRRL_ERR_IO;
+    }
+    uint8_t n = (uint8_t)take(record, 1);
+    if (n == 0 || n > 32) {
+        return GRRL_ERR_CORRUPT;
+    }
+    if (n > GRRL_MAX_LINKS) {
+        return GRRL_ERR_VERSION;
+    }
+    size_t size = (size_t)n * LINK_BYTES;
+    if (read_more(record, size + CRC_BYTES) != GRRL_OK) {
+        return GRRL_ERR_IO;
+    }
+    struct grrl_graph graph;
+    grrl_graph_clear(&graph);
+    graph.n = n;
+    for (uint8_t i = 0; i < n; ++i) {
+        graph.label[i] = take(record, 8);
+        graph.joined[GRRL_REVOLUTE][i] = (uint32_t)take(record, 4);
+        graph.joined[GRRL_PRISMATIC][i] = (uint32_t)take(record, 4);
+    }
+    struct grrl_canonical canonical;
+    uint32_t shape;
+    if (check_crc(record, 1 + size) != GRRL_OK || !is_graph(&graph) ||
+        !grrl_experience_describe(&graph, &canonical, &shape) ||
+        !grrl_graph_equal(&graph, &canonical.graph, GRRL_ALL_PROPERTIES) ||
+        grrl_experience_find_state(store, &canonical) != GRRL_NO_STATE) {
+        return GRRL_ERR_CORRUPT;
+    }
+    (void)grrl_experience_add_state(store, &canonical, shape);
+    return GRRL_OK;
+}
+
+static bool is_target(float x)
+{
+    return x >= -GRRL_MAX_TARGET && x <= GRRL_MAX_TARGET;
+}
+
+static enum grrl_status read_experience(struct grrl_experience_store *store, struct record *record,
+                                        uint32_t clock)
+{
+    if (read_more(record, EXPERIENCE_BYTES + CRC_BYTES) != GRRL_OK) {
+        return GRRL_ERR_IO;
+    }
+    uint16_t state = (uint16_t)take(record, 2);
+    uint8_t link = (uint8_t)take(record, 1);
+    uint8_t direction = (uint8_t)take(record, 1);
+    uint32_t used_at = (uint32_t)take(record, 4);
+    struct grrl_q q = {.value = take_float(record)};
+    q.mean = take_float(record);
+    q.deviations = take_float(record);
+    q.n = (uint32_t)take(record, 4);
+    bool fine = check_crc(record, EXPERIENCE_BYTES) == GRRL_OK && state < store->n_states &&
+                link < store->states[state < store->n_states ? state : 0].graph.n &&
+                direction < GRRL_DIRECTIONS && used_at <= clock && is_target(q.value) &&
+                is_target(q.mean) && grrl_is_finite(q.deviations) && q.deviations >= 0.0f &&
+                q.n > 0 &&
+                grrl_experience_find(store, state, link, direction) == GRRL_NO_EXPERIENCE;
+    if (!fine) {
+        return GRRL_ERR_CORRUPT;
+    }
+    uint16_t index = grrl_experience_add(store, state, link, direction);
+    store->experiences[index].used_at = used_at;
+    store->experiences[index].q = q;
+    return GRRL_OK;
+}
+
+static enum grrl_status read_all(struct grrl_experience_store *store,
+                                 const struct grrl_experience_io *io)
+{
+    struct record record = {.io = io};
+    struct header header;
+    enum grrl_status status = read_header(store, &record, &header);
+    for (uint16_t i = 0; status == GRRL_OK && i < header.n_states; ++i) {
+        status = read_state(store, &record);
+    }
+    for (uint16_t i = 0; status == GRRL_OK && i < header.n_experiences; ++i) {
+        status = read_experience(store, &record, header.clock);
+    }
+    for (uint16_t i = 0; status == GRRL_OK && i < store->n_states; ++i) {
+        status = store->states[i].experiences > 0 ? GRRL_OK : GRRL_ERR_CORRUPT;
+    }
+    if (status == GRRL_OK) {
+        store->clock = header.clock;
+    }
+    return status;
+}
+
+enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
+                                      const struct grrl_experience_io *io)
+{
+    grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
+                         store->experiences_capacity);
+    enum grrl_status status = read_all(store, io);
+    if (status != GRRL_OK) {
+        grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
+                             store->experiences_capacity);
+    }
+    return status;
+}

@@ -1,0 +1,510 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "grrl/learner.h"
+#include "grrl/term.h"
+#include "store_check.h"
+
+#define SEED UINT64_C(20080630)
+
+enum { STATES = 60, EXPERIENCES = 150, MOST_PUSHES = 300 };
+
+/*
+ * A world in place of perception, which is linked out: a chain of links whose joints are hidden at
+ * first. Pushing a body that hides joints across (direction 2) reveals its last one; any other push
+ * is in vain.
+ */
+static struct {
+    const char *joints; /* of the whole chain */
+    uint8_t n_bodies;
+    uint8_t first[GRRL_MAX_LINKS]; /* first link of a body, in order of discovery */
+    uint8_t last[GRRL_MAX_LINKS];
+    uint8_t revealed[GRRL_MAX_JOINTS]; /* joint i lies between links i and i + 1 */
+    uint8_t n_revealed;
+    unsigned frames;
+    bool nothing_seen;
+    struct grrl_model model;
+} world;
+
+void grrl_perception_config_default(struct grrl_perception_config *config)
+{
+    memset(config, 0, sizeof *config);
+    config->noise_m = 0.001f;
+}
+
+enum grrl_status grrl_perception_init(struct grrl_perception *perception,
+                                      const struct grrl_perception_config *config)
+{
+    perception->config = *config;
+    return config->noise_m > 0.0f ? GRRL_OK : GRRL_ERR_ARGUMENT;
+}
+
+void grrl_perception_reset(struct grrl_perception *perception)
+{
+    (void)perception;
+    memset(&world.model, 0, sizeof world.model);
+}
+
+void grrl_perception_observe(struct grrl_perception *perception, const struct grrl_frame *frame,
+                             bool pushing)
+{
+    (void)perception;
+    (void)frame;
+    (void)pushing;
+    ++world.frames;
+}
+
+static uint8_t body_with(uint8_t link)
+{
+    uint8_t body = 0;
+    while (link < world.first[body] || link > world.last[body]) {
+        ++body;
+    }
+    return body;
+}
+
+enum grrl_status grrl_perception_update(struct grrl_perception *perception)
+{
+    (void)perception;
+    if (world.nothing_seen) {
+        return GRRL_ERR_NONE;
+    }
+    struct grrl_model *model = &world.model;
+    memset(model, 0, sizeof *model);
+    model->n_bodies = world.n_bodies;
+    for (uint8_t i = 0; i < world.n_bodies; ++i) {
+        bool single = world.first[i] == world.last[i];
+        float middle = 0.05f * (float)(world.first[i] + world.last[i]);
+        model->body[i] =
+            (struct grrl_body){.number = (uint16_t)(world.first[i] + 1),
+                               .n_features = 1,
+                               .centroid_m = {middle, 0.0f},
+                               .axis = {1.0f, 0.0f},
+                               .length_m = 0.1f * (float)(world.last[i] - world.first[i] + 1),
+                               .properties = single ? GRRL_PROPERTY_SMALL : GRRL_PROPERTY_LARGE};
+        model->feature_m[i] = model->body[i].centroid_m;
+        model->feature_body[i] = i;
+    }
+    model->n_features = model->n_bodies;
+    for (uint8_t j = 0; j < world.n_revealed; ++j) {
+        uint8_t link = world.revealed[j];
+        uint8_t a = body_with(link);
+        uint8_t b = body_with((uint8_t)(link + 1));
+        model->joint[j] =
+            (struct grrl_joint){.a = a < b ? a : b,
+                                .b = a < b ? b : a,
+                                .type = world.joints[link] == 'R' ? GRRL_REVOLUTE : GRRL_PRISMATIC,
+                                .probability = 1.0f,
+                                .point_m = {0.1f * (float)link + 0.05f, 0.0f}};
+    }
+    model->n_joints = world.n_revealed;
+    return GRRL_OK;
+}
+
+const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception)
+{
+    (void)perception;
+    return &world.model;
+}
+
+void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
+                      struct grrl_name *names, struct grrl_edge *edges)
+{
+    grrl_graph_clear(graph);
+    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+        assert_int_equal(grrl_graph_add_link(graph, model->body[i].properties, NULL), GRRL_OK);
+        if (names != NULL) {
+            names[i] = (struct grrl_name){GRRL_NAME_FEATURES, model->body[i].number};
+        }
+    }
+    for (uint8_t j = 0; j < model->n_joints; ++j) {
+        const struct grrl_joint *joint = &model->joint[j];
+        assert_int_equal(
+            grrl_graph_add_joint(graph, joint->a, joint->b, (enum grrl_joint_type)joint->type),
+            GRRL_OK);
+        if (edges != NULL) {
+            edges[j] = (struct grrl_edge){joint->a, joint->b, joint->type};
+        }
+    }
+}
+
+static void world_start(const char *joints)
+{
+    memset(&world, 0, sizeof world);
+    world.joints = joints;
+    world.n_bodies = 1;
+    world.last[0] = (uint8_t)strlen(joints);
+}
+
+static void world_reveal(uint8_t body)
+{
+    if (world.first[body] < world.last[body]) {
+        uint8_t joint = (uint8_t)(world.last[body] - 1);
+        world.revealed[world.n_revealed++] = joint;
+        world.first[world.n_bodies] = world.last[body];
+        world.last[world.n_bodies] = world.last[body];
+        ++world.n_bodies;
+        world.last[body] = joint;
+    }
+}
+
+static bool world_push(const struct grrl_choice *choice)
+{
+    if (choice->direction == 2) {
+        world_reveal(choice->link);
+    }
+    return world.n_revealed == strlen(world.joints);
+}
+
+struct fixture {
+    struct grrl_learner learner;
+    struct grrl_learner_config config;
+    struct grrl_experience_state states[STATES];
+    struct grrl_experience experiences[EXPERIENCES];
+};
+
+static struct fixture one, two;
+
+static void init(struct fixture *fixture, enum grrl_policy_kind kind, uint64_t seed)
+{
+    grrl_learner_config_default(&fixture->config);
+    fixture->config.policy.kind = kind;
+    fixture->config.seed = seed;
+    assert_int_equal(grrl_learner_init(&fixture->learner, &fixture->config, fixture->states, STATES,
+                                       fixture->experiences, EXPERIENCES),
+                     GRRL_OK);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    init(&one, GRRL_POLICY_LEARN, SEED);
+    world_start("RPR");
+    return 0;
+}
+
+/* One trial to its end; *hash collects every choice. */
+static unsigned run_trial(struct fixture *fixture, const char *joints, uint32_t trial,
+                          uint32_t *hash)
+{
+    struct grrl_learner *learner = &fixture->learner;
+    world_start(joints);
+    grrl_learner_begin_trial(learner, trial);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    float sum = 0.0f;
+    for (unsigned pushes = 1; pushes <= MOST_PUSHES; ++pushes) {
+        struct grrl_decision decision;
+        struct grrl_lesson lesson;
+        assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+        *hash = *hash * 31u + decision.choice.link * 6u + decision.choice.direction;
+        bool ended = world_push(&decision.choice);
+        assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+        assert_int_equal(grrl_learner_learn(learner, ended, &lesson), GRRL_OK);
+        check_store(&learner->store);
+        sum += lesson.reward;
+        if (ended) { /* every link but the first, every joint, the trial */
+            assert_true(sum == 2.0f * (float)strlen(joints) + 1.0f);
+            return pushes;
+        }
+    }
+    return MOST_PUSHES;
+}
+
+static unsigned run_trials(struct fixture *fixture, const char *joints, uint32_t from, uint32_t n,
+                           uint32_t *hash)
+{
+    unsigned pushes = 0;
+    for (uint32_t trial = from; trial < from + n; ++trial) {
+        pushes += run_trial(fixture, joints, trial, hash);
+    }
+    return pushes;
+}
+
+static void learning_needs_fewer_pushes_than_chance(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    unsigned learned = 0;
+    unsigned chance = 0;
+    uint32_t hash = 0;
+    for (uint64_t seed = SEED; seed < SEED + 5; ++seed) {
+        init(&one, GRRL_POLICY_LEARN, seed);
+        (void)run_trials(&one, "RPRPR", 1, 20, &hash);
+        learned += run_trials(&one, "RPRPR", 21, 20, &hash);
+        init(&two, GRRL_POLICY_RANDOM, seed);
+        chance += run_trials(&two, "RPRPR", 1, 20, &hash);
+        assert_int_equal(two.learner.store.n_experiences, 0);
+    }
+    print_message("learned %u, random %u pushes\n", learned, chance);
+    assert_true(2 * learned < chance);
+}
+
+static void experience_of_one_object_helps_with_another(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    unsigned with = 0;
+    unsigned without = 0;
+    uint32_t hash = 0;
+    for (uint64_t seed = SEED; seed < SEED + 10; ++seed) {
+        init(&one, GRRL_POLICY_LEARN, seed);
+        (void)run_trials(&one, "RPR", 1, 20, &hash);
+        with += run_trials(&one, "RPRPR", 21, 5, &hash);
+        init(&two, GRRL_POLICY_LEARN, seed);
+        without += run_trials(&two, "RPRPR", 21, 5, &hash);
+    }
+    print_message("with %u, without %u pushes\n", with, without);
+    assert_true(with < without);
+}
+
+static void the_same_outcomes_give_the_same_choices(void **state)
+{
+    (void)state;
+    uint32_t a = 0;
+    uint32_t b = 0;
+    uint32_t c = 0;
+    init(&one, GRRL_POLICY_LEARN, SEED);
+    init(&two, GRRL_POLICY_LEARN, SEED);
+    unsigned pushes = run_trials(&one, "RPRP", 1, 15, &a);
+    assert_int_equal(run_trials(&two, "RPRP", 1, 15, &b), pushes);
+    assert_int_equal(a, b);
+    init(&two, GRRL_POLICY_LEARN, SEED + 1);
+    (void)run_trials(&two, "RPRP", 1, 15, &c);
+    assert_int_not_equal(a, c);
+}
+
+/* A trial begun, and abandoned after some draws, leaves no trace but experience. */
+static void nothing_but_experience_outlives_a_trial(void **state)
+{
+    (void)state;
+    uint32_t a = 0;
+    uint32_t b = 0;
+    init(&one, GRRL_POLICY_RANDOM, SEED);
+    init(&two, GRRL_POLICY_RANDOM, SEED);
+    (void)run_trial(&one, "RP", 3, &a);
+    a = 0;
+    world_start("RPR");
+    grrl_learner_begin_trial(&one.learner, 4);
+    assert_int_equal(grrl_learner_perceive(&one.learner), GRRL_OK);
+    struct grrl_decision decision;
+    assert_int_equal(grrl_learner_choose(&one.learner, &decision), GRRL_OK);
+    grrl_learner_abandon_trial(&one.learner);
+    (void)run_trial(&one, "RPRR", 9, &a);
+    (void)run_trial(&two, "RPRR", 9, &b);
+    assert_int_equal(a, b);
+}
+
+static void start(struct grrl_learner *learner)
+{
+    grrl_learner_begin_trial(learner, 1);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+}
+
+static struct grrl_lesson adopt(struct grrl_learner *learner, uint16_t number, uint8_t direction,
+                                bool ended)
+{
+    struct grrl_decision decision;
+    struct grrl_lesson lesson;
+    assert_int_equal(grrl_learner_adopt(learner, number, direction, &decision), GRRL_OK);
+    (void)world_push(&decision.choice);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    assert_int_equal(grrl_learner_learn(learner, ended, &lesson), GRRL_OK);
+    return lesson;
+}
+
+static void a_discovery_is_paid_once(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    start(learner);
+    struct grrl_lesson lesson = adopt(learner, 1, 0, false);
+    assert_true(lesson.reward == 0.0f);
+    lesson = adopt(learner, 1, 2, false);
+    assert_true(lesson.reward == 2.0f); /* a link and a joint */
+    world.n_bodies = 1;                 /* a belief may be given up .. */
+    world.n_revealed = 0;
+    world.last[0] = 3;
+    lesson = adopt(learner, 1, 0, false);
+    assert_true(lesson.reward == 0.0f);
+    lesson = adopt(learner, 1, 2, false); /* .. and come back */
+    assert_true(lesson.reward == 0.0f);
+    world_reveal(0); /* what shows at rest is nobody's merit */
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    lesson = adopt(learner, 1, 0, false);
+    assert_true(lesson.reward == 0.0f);
+    lesson = adopt(learner, 1, 2, true);
+    assert_true(lesson.reward == 3.0f); /* and the trial's own */
+}
+
+static void targets_look_one_push_ahead(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    start(learner);
+    struct grrl_lesson lesson = adopt(learner, 1, 2, false);
+    assert_true(lesson.target == 2.0f);
+    assert_int_equal(lesson.experience, 0);
+    start(learner);
+    world_start("RPR");
+    start(learner);
+    lesson = adopt(learner, 1, 0, false); /* in vain, but the next state is worth 2 */
+    assert_true(lesson.reward == 0.0f);
+    assert_true(lesson.target == 0.3f * 2.0f);
+    lesson = adopt(learner, 1, 2, true); /* nothing follows the end */
+    assert_true(lesson.target == 3.0f);
+    const struct grrl_q *q = &learner->store.experiences[lesson.experience].q;
+    assert_int_equal(q->n, 2);
+    assert_true(q->value > 2.29f && q->value < 2.31f);
+}
+
+static void a_decision_tells_why(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    struct grrl_decision decision;
+    start(learner);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLORE);
+    assert_int_equal(decision.choice.from.experience, GRRL_NO_EXPERIENCE);
+    assert_true(decision.choice.phi == 0.0f && decision.push.force_n == 10.0f);
+    assert_int_equal(decision.body_number, 1);
+    start(learner);
+    for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+        (void)adopt(learner, 1, direction == 2 ? 3 : direction, false);
+    }
+    (void)adopt(learner, 1, 2, false);
+    world_start("RPR");
+    start(learner);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLOIT);
+    assert_int_equal(decision.choice.direction, 2);
+    assert_int_equal(decision.choice.from.level, GRRL_RECALL_EXACT);
+    assert_true(decision.choice.phi == 1.0f && decision.choice.value == 2.0f);
+    assert_true(decision.choice.lower < 2.0f && decision.choice.upper > 2.0f);
+    assert_int_equal(learner->store.experiences[decision.choice.from.experience].used_at,
+                     learner->store.clock);
+    start(learner);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 2, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_FOREIGN);
+    assert_true(decision.choice.value == 2.0f);
+}
+
+static void calls_out_of_order_are_refused(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    struct grrl_decision decision;
+    struct grrl_lesson lesson;
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+    grrl_learner_observe(learner, NULL, false);
+    assert_int_equal(world.frames, 0);
+    grrl_learner_begin_trial(learner, 1);
+    grrl_learner_observe(learner, NULL, false);
+    assert_int_equal(world.frames, 1);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+    world.nothing_seen = true;
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_ERR_NONE);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+    world.nothing_seen = false;
+    world.n_bodies = 0;
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_NONE);
+    world.n_bodies = 1;
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    assert_int_equal(grrl_learner_learn(learner, false, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_adopt(learner, 99, 0, &decision), GRRL_ERR_NONE);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 6, &decision), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 0, &decision), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_learn(learner, false, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_learn(learner, true, &lesson), GRRL_OK);
+    assert_int_equal(grrl_learner_learn(learner, true, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
+}
+
+static void a_learner_of_one_experience_works(void **state)
+{
+    (void)state;
+    assert_int_equal(
+        grrl_learner_init(&one.learner, &one.config, one.states, 1, one.experiences, 1), GRRL_OK);
+    uint32_t hash = 0;
+    (void)run_trials(&one, "RPR", 1, 10, &hash);
+    assert_int_equal(one.learner.store.high_water, 1);
+    assert_true(one.learner.store.evictions > 0);
+}
+
+static void a_wrong_configuration_is_refused(void **state)
+{
+    (void)state;
+    struct grrl_learner_config config = one.config;
+    struct grrl_learner *learner = &one.learner;
+    assert_int_equal(grrl_learner_init(learner, &config, one.states, 0, one.experiences, 1),
+                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 0),
+                     GRRL_ERR_ARGUMENT);
+    config.policy.alpha = 2.0f;
+    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
+                     GRRL_ERR_ARGUMENT);
+    config = one.config;
+    config.grounding.force_n = 0.0f;
+    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
+                     GRRL_ERR_ARGUMENT);
+    config = one.config;
+    config.perception.noise_m = 0.0f;
+    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
+                     GRRL_ERR_ARGUMENT);
+}
+
+static void the_belief_is_a_term(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    start(learner);
+    (void)adopt(learner, 1, 2, false);
+    (void)adopt(learner, 1, 2, false);
+    struct grrl_term_node nodes[64];
+    struct grrl_term_store store;
+    grrl_term_store_init(&store, nodes, 64);
+    grrl_term term, again;
+    assert_int_equal(grrl_learner_term(learner, &store, &term), GRRL_OK);
+    char text[200];
+    size_t length;
+    assert_int_equal(grrl_term_print(&store, term, sizeof text, text, &length), GRRL_OK);
+    print_message("%s\n", text);
+    assert_int_equal(grrl_term_parse(&store, text, length, &again, NULL), GRRL_OK);
+    struct grrl_graph graph;
+    struct grrl_name names[GRRL_MAX_LINKS];
+    assert_int_equal(grrl_graph_from_term(&store, again, &graph, names, NULL, NULL, NULL), GRRL_OK);
+    struct grrl_match match;
+    uint8_t map[GRRL_MAX_LINKS];
+    grrl_match_begin(&match, GRRL_MATCH_ISOMORPHISM, &graph, &learner->state, GRRL_ALL_PROPERTIES,
+                     GRRL_MATCH_BUDGET);
+    assert_int_equal(grrl_match_next(&match, map), GRRL_OK);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(learning_needs_fewer_pushes_than_chance, set_up),
+        cmocka_unit_test_setup(experience_of_one_object_helps_with_another, set_up),
+        cmocka_unit_test_setup(the_same_outcomes_give_the_same_choices, set_up),
+        cmocka_unit_test_setup(nothing_but_experience_outlives_a_trial, set_up),
+        cmocka_unit_test_setup(a_discovery_is_paid_once, set_up),
+        cmocka_unit_test_setup(targets_look_one_push_ahead, set_up),
+        cmocka_unit_test_setup(a_decision_tells_why, set_up),
+        cmocka_unit_test_setup(calls_out_of_order_are_refused, set_up),
+        cmocka_unit_test_setup(a_learner_of_one_experience_works, set_up),
+        cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
+        cmocka_unit_test_setup(the_belief_is_a_term, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

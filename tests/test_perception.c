@@ -1,0 +1,417 @@
+/* Perception against worlds whose links and motions are known. */
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "kinematic_world.h"
+
+static struct grrl_perception perception;
+static struct kinematic_world world;
+
+static void start(uint64_t seed, const char *chain)
+{
+    struct grrl_perception_config config;
+    grrl_perception_config_default(&config);
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+    world_init(&world, seed);
+    world_add_chain(&world, chain, -0.4f, 0.0f);
+    world_add_background(&world, 25);
+    world_shuffle_ids(&world);
+    world_rest(&world, &perception, 10);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+}
+
+/* The true link of a tracked feature, -1 for the background. */
+static int true_link(int32_t id)
+{
+    for (int i = 0; i < world.n_points; i++) {
+        if (world.id[i] == id) {
+            return world.body[i];
+        }
+    }
+    return -2;
+}
+
+/* The true link most of a body's features are on. */
+static int link_of_body(const struct grrl_model *model, int body)
+{
+    int votes[WORLD_LINKS] = {0};
+    int best = 0;
+    for (int i = 0; i < model->n_features; i++) {
+        int link = true_link(model->feature_id[i]);
+        if (model->feature_body[i] == body && link >= 0) {
+            votes[link]++;
+        }
+    }
+    for (int i = 0; i < world.n_links; i++) {
+        best = votes[i] > votes[best] ? i : best;
+    }
+    return best;
+}
+
+/* Features that lie in a body of another link than their own. */
+static int misplaced(const struct grrl_model *model)
+{
+    int n = 0;
+    for (int i = 0; i < model->n_features; i++) {
+        if (model->feature_body[i] < model->n_bodies) {
+            n += link_of_body(model, model->feature_body[i]) != true_link(model->feature_id[i]);
+        }
+    }
+    return n;
+}
+
+/* Every body another link, every joint between neighbours in the chain and of the right type. */
+static bool is_the_chain(const struct grrl_model *model)
+{
+    if (model->n_bodies != world.n_links || model->n_joints != world.n_links - 1) {
+        return false;
+    }
+    bool found[WORLD_LINKS] = {false};
+    for (int i = 0; i < model->n_joints; i++) {
+        int a = link_of_body(model, model->joint[i].a);
+        int b = link_of_body(model, model->joint[i].b);
+        int child = a > b ? a : b;
+        char type = model->joint[i].type == GRRL_REVOLUTE ? 'R' : 'P';
+        if ((a > b ? a - b : b - a) != 1 || world.joint[child] != type || found[child]) {
+            return false;
+        }
+        found[child] = true;
+    }
+    return true;
+}
+
+static void push(const float *dq)
+{
+    struct grrl_vec2 shift = {0.01f, -0.005f};
+    assert_int_equal(world_push(&world, &perception, dq, shift, 0.05f), GRRL_OK);
+}
+
+static void move_one(int link, float by)
+{
+    float dq[WORLD_LINKS] = {0.0f};
+    dq[link] = by;
+    push(dq);
+}
+
+static void one_blob_before_anything_moved(void **state)
+{
+    (void)state;
+    start(1, "RPR");
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    assert_int_equal(model->n_bodies, 1);
+    assert_int_equal(model->n_joints, 0);
+    assert_int_equal(model->body[0].properties, GRRL_PROPERTY_LARGE);
+    int on_table_in_body = 0;
+    for (int i = 0; i < model->n_features; i++) {
+        int link = true_link(model->feature_id[i]);
+        assert_true(link < 0 || model->feature_body[i] == 0);
+        on_table_in_body += link < 0 && model->feature_body[i] == 0;
+    }
+    assert_true(on_table_in_body <= 3); /* what lies right beside the object looks like it */
+}
+
+static void two_objects_are_two_bodies(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config;
+    grrl_perception_config_default(&config);
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+    world_init(&world, 3);
+    world_add_chain(&world, "R", -0.5f, -0.3f);
+    world_add_chain(&world, "R", 0.3f, 0.3f);
+    world_add_background(&world, 10);
+    world_rest(&world, &perception, 10);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
+}
+
+static void revolute_joint_with_its_pivot(void **state)
+{
+    (void)state;
+    start(2, "R");
+    move_one(1, 0.4f);
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    assert_true(is_the_chain(model));
+    assert_true(misplaced(model) <= 1);
+    world_poses(&world);
+    struct grrl_vec2 pivot =
+        grrl_transform(world.pose[0], (struct grrl_vec2){world.length_m / 2, 0.0f});
+    float error = grrl_vec2_length(grrl_vec2_sub(model->joint[0].point_m, pivot));
+    assert_true(error < 0.002f);
+    assert_true(error < 5.0f * model->joint[0].pivot_sd_m + 0.0005f);
+    assert_true(model->joint[0].upper - model->joint[0].lower > 0.38f);
+    assert_true(model->joint[0].upper - model->joint[0].lower < 0.42f);
+    assert_true(model->joint[0].probability > 0.95f);
+}
+
+static void prismatic_joint_with_its_axis(void **state)
+{
+    (void)state;
+    start(4, "P");
+    move_one(1, 0.015f);
+    move_one(1, -0.008f);
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    assert_true(is_the_chain(model));
+    world_poses(&world);
+    struct grrl_vec2 axis = {world.pose[0].c, world.pose[0].s};
+    assert_true(fabsf(grrl_vec2_dot(axis, model->joint[0].axis)) > cosf(0.035f));
+    float range = model->joint[0].upper - model->joint[0].lower;
+    assert_true(range > 0.0138f && range < 0.0162f);
+}
+
+static void little_motion_supports_no_type(void **state)
+{
+    (void)state;
+    start(5, "R");
+    move_one(1, 0.03f);
+    assert_int_equal(grrl_perception_model(&perception)->n_joints, 0);
+}
+
+static void moving_as_one_is_one(void **state)
+{
+    (void)state;
+    start(6, "RPR");
+    float dq[WORLD_LINKS] = {0.0f};
+    for (int i = 0; i < 5; i++) {
+        push(dq);
+    }
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 1);
+}
+
+static void evidence_accumulates_over_pushes(void **state)
+{
+    (void)state;
+    start(7, "RPRPR");
+    for (int link = 1; link < world.n_links; link++) {
+        assert_false(is_the_chain(grrl_perception_model(&perception)));
+        move_one(link, world.joint[link] == 'R' ? 0.35f : 0.012f);
+    }
+    move_one(2, -0.009f);
+    move_one(4, -0.009f);
+    assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
+static void branches_and_numbers_stay(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config;
+    grrl_perception_config_default(&config);
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+    world_init(&world, 8);
+    int hub = world_add_link(&world, -1, 0);
+    for (int i = 0; i < 3; i++) { /* a star: three links turn about the hub's end */
+        int leg = world_add_link(&world, hub, 'R');
+        world.q[leg] = -1.2f + 1.2f * (float)i;
+    }
+    world_rest(&world, &perception, 10);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    move_one(1, -0.4f);
+    uint16_t first = grrl_perception_model(&perception)->body[0].number;
+    move_one(2, 0.35f);
+    move_one(3, 0.4f);
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    assert_int_equal(model->n_bodies, 4);
+    assert_int_equal(model->n_joints, 3);
+    assert_int_equal(model->body[0].number, first);
+}
+
+/* Over many random motions hardly any state may carry a wrong joint or a split link. */
+static void random_chains_are_found(void **state)
+{
+    (void)state;
+    static const char *const chains[] = {"RR", "RPRPR", "RRRR", "PRRP"};
+    int states = 0;
+    int wrong = 0;
+    int complete = 0;
+    int trials = 0;
+    for (uint64_t seed = 100; seed < 120; seed++) {
+        start(seed, chains[seed % 4]);
+        for (int i = 0; i < 12; i++) {
+            float dq[WORLD_LINKS] = {0.0f};
+            int link = 1 + (int)grrl_random_below(&world.random, (uint32_t)world.n_links - 1);
+            float d = world.joint[link] == 'R' ? world_uniform(&world, 0.1f, 0.4f)
+                                               : world_uniform(&world, 0.004f, 0.015f);
+            dq[link] = world.q[link] > 0.0f ? -d : d;
+            push(dq);
+            const struct grrl_model *model = grrl_perception_model(&perception);
+            states++;
+            wrong += model->n_bodies > world.n_links;
+        }
+        trials++;
+        complete += is_the_chain(grrl_perception_model(&perception));
+    }
+    print_message("seeds 100 to 119: %d of %d chains complete, %d of %d states with a split link\n",
+                  complete, trials, wrong, states);
+    assert_true(complete >= 16); /* twelve random pushes need not move every joint */
+    assert_true(wrong * 50 <= states);
+}
+
+static void order_and_ids_of_points_do_not_matter(void **state)
+{
+    (void)state;
+    struct grrl_graph graphs[2];
+    for (int variant = 0; variant < 2; variant++) {
+        struct grrl_perception_config config;
+        grrl_perception_config_default(&config);
+        assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+        world_init(&world, 9);
+        world_add_chain(&world, "RP", -0.2f, 0.0f);
+        world_add_background(&world, 10);
+        for (int f = 0; f < 140; f++) {
+            bool pushing = f >= 10 && f < 130;
+            world.q[1] += pushing ? 0.4f / 120 : 0.0f;
+            world.q[2] += pushing ? 0.012f / 120 : 0.0f;
+            struct grrl_frame frame = world_frame(&world);
+            if (variant == 1) { /* backwards, with other ids */
+                for (uint32_t i = 0; i < frame.n; i++) {
+                    world.seen[i] = 7000 - 3 * world.seen[i];
+                }
+                for (uint32_t i = 0; i < frame.n / 2; i++) {
+                    uint32_t j = frame.n - 1 - i;
+                    int32_t id = world.seen[i];
+                    float x = world.x[i];
+                    float y = world.y[i];
+                    world.seen[i] = world.seen[j];
+                    world.x[i] = world.x[j];
+                    world.y[i] = world.y[j];
+                    world.seen[j] = id;
+                    world.x[j] = x;
+                    world.y[j] = y;
+                }
+            }
+            grrl_perception_observe(&perception, &frame, pushing);
+        }
+        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+        grrl_model_graph(grrl_perception_model(&perception), &graphs[variant], NULL, NULL);
+    }
+    struct grrl_canonical a;
+    struct grrl_canonical b;
+    assert_int_equal(grrl_canonical(&graphs[0], GRRL_ALL_PROPERTIES, 2000, &a), GRRL_OK);
+    assert_int_equal(grrl_canonical(&graphs[1], GRRL_ALL_PROPERTIES, 2000, &b), GRRL_OK);
+    assert_int_equal(graphs[0].n, 3);
+    assert_true(grrl_graph_equal(&a.graph, &b.graph, GRRL_ALL_PROPERTIES));
+}
+
+static void missing_features_are_no_harm(void **state)
+{
+    (void)state;
+    start(10, "RR");
+    world.missing = 0.2f;
+    move_one(1, 0.35f);
+    move_one(2, -0.35f);
+    assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
+static void bad_points_are_refused_and_counted(void **state)
+{
+    (void)state;
+    start(11, "R");
+    int32_t id[4] = {1, 2, 3, 4};
+    float x[4] = {NAN, INFINITY, 1e9f, 0.0f};
+    float y[4] = {0.0f, 0.0f, 0.0f, -INFINITY};
+    struct grrl_frame frame = {4, id, x, y};
+    uint32_t before = perception.counts.refused;
+    grrl_perception_observe(&perception, &frame, false);
+    assert_int_equal(perception.counts.refused, before + 4);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 1);
+}
+
+static void a_jump_is_an_outlier_a_long_one_a_new_feature(void **state)
+{
+    (void)state;
+    start(12, "R");
+    for (int i = 0; i < 6; i++) {
+        struct grrl_frame frame = world_frame(&world);
+        world.x[0] += 0.1f;
+        grrl_perception_observe(&perception, &frame, false);
+    }
+    assert_int_equal(perception.counts.outliers, 5);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+}
+
+static void more_features_than_fit_are_counted(void **state)
+{
+    (void)state;
+    start(13, "R");
+    static int32_t id[2 * GRRL_MAX_FEATURES];
+    static float x[2 * GRRL_MAX_FEATURES];
+    static float y[2 * GRRL_MAX_FEATURES];
+    for (int i = 0; i < 2 * GRRL_MAX_FEATURES; i++) {
+        id[i] = 100000 + i;
+        x[i] = 0.001f * (float)i;
+        y[i] = 0.5f;
+    }
+    struct grrl_frame frame = {2 * GRRL_MAX_FEATURES, id, x, y};
+    grrl_perception_observe(&perception, &frame, false);
+    assert_true(perception.counts.overflow >= GRRL_MAX_FEATURES);
+    assert_int_equal(perception.counts.features_high, GRRL_MAX_FEATURES);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+}
+
+static void keyframes_are_thinned_when_full(void **state)
+{
+    (void)state;
+    start(14, "RR");
+    for (int i = 0; i < 30; i++) {
+        move_one(1 + i % 2, i % 4 < 2 ? 0.3f : -0.3f);
+    }
+    assert_int_equal(perception.counts.keyframes_high, GRRL_MAX_KEYFRAMES);
+    assert_true(perception.counts.thinned > 0);
+    assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
+static void reset_forgets_the_object(void **state)
+{
+    (void)state;
+    start(15, "RR");
+    move_one(1, 0.4f);
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
+    grrl_perception_reset(&perception);
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 0);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_ERR_NONE);
+}
+
+static void bad_configurations_are_refused(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config;
+    grrl_perception_config_default(&config);
+    config.noise_m = 0.0f;
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_ERR_ARGUMENT);
+    grrl_perception_config_default(&config);
+    config.gap_m = NAN;
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_ERR_ARGUMENT);
+    grrl_perception_config_default(&config);
+    config.min_features = 2;
+    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_ERR_ARGUMENT);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_blob_before_anything_moved),
+        cmocka_unit_test(two_objects_are_two_bodies),
+        cmocka_unit_test(revolute_joint_with_its_pivot),
+        cmocka_unit_test(prismatic_joint_with_its_axis),
+        cmocka_unit_test(little_motion_supports_no_type),
+        cmocka_unit_test(moving_as_one_is_one),
+        cmocka_unit_test(evidence_accumulates_over_pushes),
+        cmocka_unit_test(branches_and_numbers_stay),
+        cmocka_unit_test(random_chains_are_found),
+        cmocka_unit_test(order_and_ids_of_points_do_not_matter),
+        cmocka_unit_test(missing_features_are_no_harm),
+        cmocka_unit_test(bad_points_are_refused_and_counted),
+        cmocka_unit_test(a_jump_is_an_outlier_a_long_one_a_new_feature),
+        cmocka_unit_test(more_features_than_fit_are_counted),
+        cmocka_unit_test(keyframes_are_thinned_when_full),
+        cmocka_unit_test(reset_forgets_the_object),
+        cmocka_unit_test(bad_configurations_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
