@@ -75,8 +75,8 @@ static inline int world_add_link(struct kinematic_world *w, int parent, char joi
     w->q[link] = joint == 'R' ? world_uniform(w, -0.3f, 0.3f) : 0.0f;
     int n = 8 + (int)grrl_random_below(&w->random, 6);
     for (int i = 0; i < n; i++) {
-        (void)world_add_point(w, link, world_uniform(w, -w->length_m / 2, w->length_m / 2),
-                              world_uniform(w, -0.0175f, 0.0175f));
+        float x = w->length_m * (((float)i + world_uniform(w, 0.0f, 1.0f)) / (float)n - 0.5f);
+        (void)world_add_point(w, link, x, world_uniform(w, -0.0175f, 0.0175f));
     }
     return link;
 }
