@@ -20,6 +20,7 @@ struct kinematic_world {
     int parent[WORLD_LINKS]; /* -1: a root */
     char joint[WORLD_LINKS]; /* 'R' or 'P' with the parent, 0 for a root */
     float q[WORLD_LINKS];
+    float anchor_m[WORLD_LINKS]; /* where on the parent's axis the link is joined */
     struct grrl_pose root[WORLD_LINKS];
     float root_angle[WORLD_LINKS];
     struct grrl_pose pose[WORLD_LINKS];
@@ -64,17 +65,18 @@ static inline int world_add_point(struct kinematic_world *w, int body, float x, 
 }
 
 /* A link of length_m, its features 8 to 13 at random; joined at its near end to the parent's far
- * end (branch: children share it). */
+ * end unless anchor_m is changed. */
 static inline int world_add_link(struct kinematic_world *w, int parent, char joint)
 {
     int link = w->n_links++;
     w->parent[link] = parent;
     w->joint[link] = joint;
+    w->anchor_m[link] = w->length_m / 2;
     w->q[link] = joint == 'R' ? world_uniform(w, -0.3f, 0.3f) : 0.0f;
     int n = 8 + (int)grrl_random_below(&w->random, 6);
     for (int i = 0; i < n; i++) {
-        (void)world_add_point(w, link, world_uniform(w, -w->length_m / 2, w->length_m / 2),
-                              world_uniform(w, -0.0175f, 0.0175f));
+        float x = w->length_m * (((float)i + world_uniform(w, 0.0f, 1.0f)) / (float)n - 0.5f);
+        (void)world_add_point(w, link, x, world_uniform(w, -0.0175f, 0.0175f));
     }
     return link;
 }
@@ -121,7 +123,7 @@ static inline void world_poses(struct kinematic_world *w)
         struct grrl_pose pose = {.c = parent.c * cosf(angle) - parent.s * sinf(angle),
                                  .s = parent.s * cosf(angle) + parent.c * sinf(angle)};
         struct grrl_vec2 hinge =
-            grrl_transform(parent, (struct grrl_vec2){w->length_m / 2 + slide, 0.0f});
+            grrl_transform(parent, (struct grrl_vec2){w->anchor_m[i] + slide, 0.0f});
         pose.p = grrl_vec2_add(hinge, grrl_rotate(pose, (struct grrl_vec2){w->length_m / 2, 0.0f}));
         w->pose[i] = pose;
     }

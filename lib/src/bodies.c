@@ -13,8 +13,9 @@
 
 #include <string.h>
 
-#define COST_CAP 16.0f    /* of one squared residual: an outlier weighs no more */
-#define SEED_NEIGHBOURS 3 /* with the seed: the smallest group whose pose is worth something */
+#define COST_CAP 16.0f        /* of one squared residual: an outlier weighs no more */
+#define DENSITY_CONTRAST 1.4f /* log of squared distances: background is twice as sparse */
+#define SEED_NEIGHBOURS 3     /* with the seed: the smallest group whose pose is worth something */
 #define SEEDS_MAX 48
 #define SPLIT_KEYFRAMES 10  /* that tell most, used to score hypotheses */
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
@@ -53,9 +54,10 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
     return second;
 }
 
-static float median(float *values, uint16_t n)
+static void sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n; i++) { /* insertion sort: n is at most GRRL_MAX_FEATURES, once */
+    for (uint16_t i = 1; i < n;
+         i++) { /* insertion sort: once an object, GRRL_MAX_FEATURES values */
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -64,7 +66,33 @@ static float median(float *values, uint16_t n)
         }
         values[j] = v;
     }
-    return values[n / 2];
+}
+
+/*
+ * How far features of one object lie apart at most: three times their usual distance. Features of
+ * objects lie densely, those of the background do not; Otsu's threshold (1979) on the logarithms
+ * of the sorted distances parts the two, whichever are more.
+ */
+static float object_reach(float *distance2, uint16_t n)
+{
+    sort(distance2, n);
+    float total = 0.0f;
+    for (uint16_t i = 0; i < n; i++) {
+        total += grrl_log(distance2[i] + 1e-9f);
+    }
+    uint16_t dense = n;
+    float best = 0.0f;
+    float below = 0.0f;
+    for (uint16_t i = 1; i < n; i++) {
+        below += grrl_log(distance2[i - 1] + 1e-9f);
+        float gap = below / (float)i - (total - below) / (float)(n - i);
+        float between = gap * gap * (float)i * (float)(n - i);
+        if (between > best && -gap > DENSITY_CONTRAST) {
+            best = between;
+            dense = i;
+        }
+    }
+    return 3.0f * grrl_sqrt(distance2[dense / 2]);
 }
 
 /* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
@@ -105,13 +133,13 @@ static void first_look(struct grrl_perception *p)
     if (n < 3) {
         return;
     }
-    float reach2 = 9.0f * median(values, n); /* three times the usual distance */
+    float reach = object_reach(values, n);
     uint8_t blob = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS) {
             continue;
         }
-        uint16_t size = grow_blob(p, i, reach2, (uint8_t)(blob + 1));
+        uint16_t size = grow_blob(p, i, reach * reach, (uint8_t)(blob + 1));
         bool is_body = size >= p->config.min_features + 1;
         for (uint16_t j = 0; j < p->n_slots; j++) {
             if (p->blob_of[j] == blob + 1) {
@@ -141,8 +169,8 @@ static float cost_limit(uint16_t n)
     return 2.0f * (float)n + 4.0f * grrl_sqrt(4.0f * (float)n) + 4.0f;
 }
 
-/* Cost of a feature that has never moved. */
-static float static_cost(const struct grrl_perception *p, uint16_t slot, uint16_t *n)
+/* Whether a feature left its place at any time. */
+static bool moves(const struct grrl_perception *p, uint16_t slot)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
     float mass = 0.0f;
@@ -151,7 +179,7 @@ static float static_cost(const struct grrl_perception *p, uint16_t slot, uint16_
         mean = grrl_vec2_add(mean, grrl_vec2_scale(p->keyframe[k].point[slot], w));
         mass += w;
     }
-    *n = 0;
+    uint16_t n = 0;
     float cost = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
@@ -159,10 +187,40 @@ static float static_cost(const struct grrl_perception *p, uint16_t slot, uint16_
             float d2 = distance2(p->keyframe[k].point[slot], grrl_vec2_scale(mean, 1.0f / mass)) /
                        grrl_keyframe_variance(p, w);
             cost += d2 < COST_CAP ? d2 : COST_CAP;
-            (*n)++;
+            n++;
         }
     }
-    return cost;
+    return n > 0 && cost >= cost_limit(n);
+}
+
+/* Whether a body has moved on the table at all. */
+static bool body_has_moved(const struct grrl_perception *p, uint8_t body)
+{
+    int balance = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            balance += p->has_moved[i] ? 1 : -1;
+        }
+    }
+    return balance > 0;
+}
+
+static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
+{
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body && p->blob_of[i] != 0) {
+            return p->blob_of[i];
+        }
+    }
+    return 0;
+}
+
+/* Blobs that lie apart stay apart until motion speaks: what never moved looks rigid with everything
+ * that never moved. */
+static bool may_share(const struct grrl_perception *p, uint8_t blob, bool moved, uint8_t body)
+{
+    uint8_t other = blob_of_body(p, body);
+    return blob == 0 || other == 0 || blob == other || (moved && body_has_moved(p, body));
 }
 
 /* Splitting. */
@@ -418,30 +476,6 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
     return evidence;
 }
 
-/* Whether a body has moved on the table at all. */
-static bool has_moved(const struct grrl_perception *p, uint8_t body)
-{
-    uint16_t slots[GRRL_MAX_FEATURES];
-    uint16_t n = grrl_body_slots(p, body, slots);
-    unsigned moved = 0;
-    for (uint16_t i = 0; i < n; i++) {
-        uint16_t seen;
-        float cost = static_cost(p, slots[i], &seen);
-        moved += cost > cost_limit(seen) ? 1u : 0u;
-    }
-    return 2 * moved > n;
-}
-
-static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
-{
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body && p->blob_of[i] != 0) {
-            return p->blob_of[i];
-        }
-    }
-    return 0;
-}
-
 /* Takes a body out of the list; its features must be elsewhere. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
@@ -459,13 +493,10 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-/* Whether two bodies may be one: they moved apart in no keyframe. Blobs that lie apart stay apart
- * until motion speaks: what never moved looks rigid with everything that never moved. */
+/* Whether two bodies may be one: they moved apart in no keyframe. */
 static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    uint8_t blob_a = blob_of_body(p, a);
-    uint8_t blob_b = blob_of_body(p, b);
-    if (blob_a != blob_b && !(has_moved(p, a) && has_moved(p, b))) {
+    if (!may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
         return 1e9f;
     }
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -509,7 +540,8 @@ static bool reassign_once(struct grrl_perception *p)
         for (uint8_t b = 0; b < p->n_bodies; b++) {
             struct grrl_vec2 local = p->shape[i];
             uint16_t n;
-            if (b != own && !grrl_rigid_place(p, i, &p->pose[0][b], GRRL_MAX_LINKS, &local)) {
+            if (b != own && (!may_share(p, p->blob_of[i], p->has_moved[i], b) ||
+                             !grrl_rigid_place(p, i, &p->pose[0][b], GRRL_MAX_LINKS, &local))) {
                 continue;
             }
             if (own == GRRL_FEATURE_BACKGROUND && p->blob_of[i] == 0) {
@@ -522,10 +554,7 @@ static bool reassign_once(struct grrl_perception *p)
                 best_excess = excess;
             }
         }
-        uint16_t n;
-        float still = static_cost(p, i, &n);
-        bool never_moved = n > 0 && still < cost_limit(n);
-        if (never_moved && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
+        if (!p->has_moved[i] && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
             best = GRRL_FEATURE_BACKGROUND;
         }
         changed = changed || p->body_of[i] != best;
@@ -574,7 +603,8 @@ static bool fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint1
                     2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         struct grrl_vec2 local;
-        if (b != own && grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
+        if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
+            grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
             grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, COST_CAP, &n) <=
                 allowed) {
             return true;
@@ -663,6 +693,9 @@ void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0) {
         first_look(p);
+    }
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        p->has_moved[i] = moves(p, i);
     }
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         fit_body(p, b);

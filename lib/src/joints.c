@@ -365,9 +365,37 @@ static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
     return 0;
 }
 
+/* Several links on one pin are joined by one joint fewer than they are: a further joint at the
+ * pivot of one already taken closes no loop. */
+static bool shares_a_pin(const struct evidence *taken, uint8_t n, const struct evidence *e,
+                         float reach)
+{
+    if (e->type != GRRL_REVOLUTE) {
+        return false;
+    }
+    for (uint8_t i = 0; i < n; i++) {
+        const struct evidence *t = &taken[i];
+        struct grrl_vec2 d;
+        if (t->type != GRRL_REVOLUTE) {
+            continue;
+        }
+        if (t->a == e->a || t->b == e->a) {
+            d = grrl_vec2_sub(t->a == e->a ? t->fit.in_a : t->fit.in_b, e->fit.in_a);
+        } else if (t->a == e->b || t->b == e->b) {
+            d = grrl_vec2_sub(t->a == e->b ? t->fit.in_a : t->fit.in_b, e->fit.in_b);
+        } else {
+            continue;
+        }
+        if (grrl_vec2_length(d) < reach) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
  * returns how many. */
-static uint8_t choose_structure(struct evidence *e, uint16_t n)
+static uint8_t choose_structure(const struct grrl_perception *p, struct evidence *e, uint16_t n)
 {
     uint32_t joined[GRRL_MAX_LINKS] = {0};
     for (uint16_t i = 1; i < n; i++) {
@@ -383,7 +411,9 @@ static uint8_t choose_structure(struct evidence *e, uint16_t n)
     for (int loops = 0; loops < 2; loops++) {
         for (uint16_t i = accepted; i < n && accepted < GRRL_MAX_JOINTS; i++) {
             unsigned links = links_between(joined, e[i].a, e[i].b);
-            bool take = loops == 0 ? links == 0 : links >= 4 && e[i].weight > LOOP_COST;
+            bool take = loops == 0 ? links == 0
+                                   : links >= 4 && e[i].weight > LOOP_COST &&
+                                         !shares_a_pin(e, accepted, &e[i], 0.2f * p->config.gap_m);
             if (take) {
                 struct evidence taken = e[i];
                 joined[taken.a] |= UINT32_C(1) << taken.b;
@@ -503,7 +533,7 @@ void grrl_joints_update(struct grrl_perception *p)
             }
         }
     }
-    uint8_t accepted = choose_structure(e, n);
+    uint8_t accepted = choose_structure(p, e, n);
     uint8_t order[GRRL_MAX_JOINTS];
     (void)order_of_discovery(p, e, accepted, order);
     struct grrl_model *model = &p->model;

@@ -132,6 +132,7 @@ struct grrl_perception {
     uint8_t jumps[GRRL_MAX_FEATURES];
     uint8_t body_of[GRRL_MAX_FEATURES];
     uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
+    bool has_moved[GRRL_MAX_FEATURES];  /* at any time since the first keyframe */
 
     /* private: keyframes */
     struct grrl_perception_window window;
