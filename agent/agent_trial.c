@@ -55,19 +55,26 @@ static void next_push(struct grrl_agent *agent)
     agent->stage = STAGE_COMMANDED;
 }
 
-/* Takes over the decision seen on the wire if it is that of push cmd_seq. */
+/*
+ * Takes over the decision seen on the wire if it is that of push cmd_seq. A choice made from
+ * experience counts as a use of it, as it does for the agent that chose: what is evicted later, and
+ * the file, depend on it.
+ */
 static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
 {
     const grrl_decision_t *seen = &agent->decision;
-    if (seen->trial_id != agent->trial_id || seen->cmd_seq != cmd_seq)
+    uint8_t direction = 0;
+    while (direction < GRRL_DIRECTIONS && grrl_direction_deg[direction] != seen->direction_deg)
+        direction++;
+    struct grrl_decision decision;
+    if (seen->trial_id != agent->trial_id || seen->cmd_seq != cmd_seq ||
+        grrl_learner_adopt(&agent->learner, (uint16_t)seen->link_number, direction, &decision) !=
+            GRRL_OK)
         return false;
-    for (uint8_t d = 0; d < GRRL_DIRECTIONS; d++) {
-        struct grrl_decision decision;
-        if (grrl_direction_deg[d] == seen->direction_deg)
-            return grrl_learner_adopt(&agent->learner, (uint16_t)seen->link_number, d, &decision) ==
-                   GRRL_OK;
-    }
-    return false;
+    uint16_t used = decision.choice.from.experience;
+    if (seen->reason == GRRL_DECISION_T_EXPLOIT && used != GRRL_NO_EXPERIENCE)
+        grrl_experience_touch(&agent->learner.store, used);
+    return true;
 }
 
 static void choose(struct grrl_agent *agent)
