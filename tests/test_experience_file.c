@@ -374,6 +374,28 @@ static void content_that_save_never_writes_is_corrupt(void **state)
     assert_int_equal(load(&copy, &second), GRRL_ERR_CORRUPT);
 }
 
+static void a_state_in_another_order_is_corrupt(void **state)
+{
+    (void)state;
+    init(&original, 1, 1);
+    struct grrl_graph graph;
+    grrl_graph_clear(&graph);
+    assert_int_equal(grrl_graph_add_link(&graph, GRRL_PROPERTY_SMALL, NULL), GRRL_OK);
+    assert_int_equal(grrl_graph_add_link(&graph, GRRL_PROPERTY_LARGE, NULL), GRRL_OK);
+    assert_int_equal(grrl_graph_add_joint(&graph, 0, 1, GRRL_REVOLUTE), GRRL_OK);
+    assert_int_equal(grrl_experience_update(&original.store, &graph, 0, 0, 1.0f, 0.3f, NULL),
+                     GRRL_OK);
+    assert_int_equal(save(&original, &file), GRRL_OK);
+    assert_int_equal(load(&copy, &file), GRRL_OK);
+    uint8_t *label = file.bytes + HEADER + CRC + 1;
+    uint8_t first = label[0];
+    label[0] = label[16];
+    label[16] = first;
+    sign(&file);
+    assert_int_equal(load(&copy, &file), GRRL_ERR_CORRUPT);
+    check_empty(&copy.store);
+}
+
 static void other_versions_and_builds_are_told(void **state)
 {
     (void)state;
@@ -417,6 +439,7 @@ int main(void)
         cmocka_unit_test_setup(the_crc_is_the_common_one, set_up),
         cmocka_unit_test_setup(damage_with_a_right_crc_harms_nothing, set_up),
         cmocka_unit_test_setup(content_that_save_never_writes_is_corrupt, set_up),
+        cmocka_unit_test_setup(a_state_in_another_order_is_corrupt, set_up),
         cmocka_unit_test_setup(other_versions_and_builds_are_told, set_up),
         cmocka_unit_test_setup(a_file_larger_than_the_store_is_told, set_up),
     };

@@ -380,6 +380,7 @@ static void a_decision_tells_why(void **state)
     (void)adopt(learner, 1, 2, false);
     world_start("RPR");
     start(learner);
+    (void)adopt(learner, 1, 3, false); /* now used later than the best */
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLOIT);
     assert_int_equal(decision.choice.direction, 2);
