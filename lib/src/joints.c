@@ -44,12 +44,14 @@ struct fit {
     struct grrl_vec2 in_a;
     struct grrl_vec2 in_b;
     struct grrl_vec2 axis_in_a;
-    float pivot_variance;
+    float point_variance; /* of the pivot per axis; of the sliding line across */
+    float axis_variance;  /* of the sliding direction, rad^2 */
 };
 
 struct evidence {
     float weight; /* chi squared better than free */
     float odds;   /* chi squared better than the other type */
+    float p[3];   /* probabilities: revolute, prismatic, free */
     uint8_t a;
     uint8_t b;
     uint8_t type;
@@ -157,7 +159,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
         fit->in_b.y = ((-ms * d.x + mc * d.y) / a - e.y) / schur;
         fit->in_a.x = (d.x + mc * fit->in_b.x - ms * fit->in_b.y) / a;
         fit->in_a.y = (d.y + ms * fit->in_b.x + mc * fit->in_b.y) / a;
-        fit->pivot_variance = 1.0f / schur;
+        fit->point_variance = 1.0f / schur;
         lever_a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
         lever_b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
     }
@@ -183,6 +185,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     fit->excited = range > p->config.min_turn_rad &&
                    range * range > EXCITED_SIGMAS * EXCITED_SIGMAS * least_variance;
     fit->axis_in_a = (struct grrl_vec2){0.0f, 0.0f};
+    fit->axis_variance = 0.0f;
 }
 
 /* The sliding point half way between the bodies, so that the turn noise of both counts the same. */
@@ -244,7 +247,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
                    range * range * w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
     fit->in_a = grrl_vec2_scale(mean, 1.0f);
     fit->in_b = (struct grrl_vec2){0.0f, 0.0f};
-    fit->pivot_variance = 0.0f;
+    fit->point_variance = 1.0f / w;
+    fit->axis_variance = 1.0f / (major + 1.0f);
 }
 
 /* What free motion pays: the keyframes that differ from a rigid pair, up to a limit. */
@@ -323,6 +327,22 @@ static bool is_near(const struct grrl_perception *p, const struct evidence *e)
     return true;
 }
 
+/* Probabilities of the three models with equal priors, from their chi squared. */
+static void model_probabilities(float revolute, float prismatic, float free, float *p)
+{
+    float chi2[3] = {revolute, prismatic, free};
+    float least = revolute < prismatic ? revolute : prismatic;
+    least = free < least ? free : least;
+    float sum = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        p[i] = grrl_exp(-0.5f * (chi2[i] - least));
+        sum += p[i];
+    }
+    for (int i = 0; i < 3; i++) {
+        p[i] /= sum;
+    }
+}
+
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
 static bool weigh(const struct grrl_perception *p, uint8_t a, uint8_t b, struct evidence *e)
 {
@@ -343,6 +363,7 @@ static bool weigh(const struct grrl_perception *p, uint8_t a, uint8_t b, struct 
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
+    model_probabilities(revolute.excess, prismatic.excess, free, e->p);
     return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
 }
 
@@ -427,24 +448,26 @@ static uint8_t choose_structure(const struct grrl_perception *p, struct evidence
     return accepted;
 }
 
-static float probability_of(const struct evidence *e)
-{
-    float least = e->odds < e->weight ? e->odds : e->weight;
-    return 1.0f / (1.0f + grrl_exp(-0.5f * least));
-}
-
 static void describe_joint(const struct grrl_perception *p, const struct evidence *e,
                            struct grrl_joint *joint)
 {
     const struct grrl_pose pose = p->pose[p->n_keyframes - 1][e->a].pose;
+    float v = e->fit.point_variance;
+    struct grrl_vec2 axis = grrl_rotate(pose, e->fit.axis_in_a);
+    bool slides = e->type == GRRL_PRISMATIC;
     *joint = (struct grrl_joint){
         .a = e->a,
         .b = e->b,
         .type = e->type,
-        .probability = probability_of(e),
+        .probability = e->p[e->type],
+        .p_revolute = e->p[0],
+        .p_prismatic = e->p[1],
+        .p_disconnected = e->p[2],
         .point_m = grrl_transform(pose, e->fit.in_a),
-        .pivot_sd_m = grrl_sqrt(e->fit.pivot_variance),
-        .axis = grrl_rotate(pose, e->fit.axis_in_a),
+        .point_cov_m2 = {slides ? v * axis.y * axis.y : v, slides ? -v * axis.x * axis.y : 0.0f,
+                         slides ? v * axis.x * axis.x : v},
+        .axis = axis,
+        .axis_sd_rad = grrl_sqrt(e->fit.axis_variance),
         .lower = e->fit.lower,
         .upper = e->fit.upper,
     };

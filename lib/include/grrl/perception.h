@@ -66,11 +66,15 @@ struct grrl_body {
 struct grrl_joint {
     uint8_t a;
     uint8_t b;
-    uint8_t type;             /* enum grrl_joint_type */
-    float probability;        /* of this type, given the evidence; 0.5 to 1 */
+    uint8_t type;      /* enum grrl_joint_type */
+    float probability; /* of this type, given the evidence */
+    float p_revolute;  /* and of each possibility; their sum is 1 */
+    float p_prismatic;
+    float p_disconnected;
     struct grrl_vec2 point_m; /* the pivot; a point on the sliding axis */
-    float pivot_sd_m;         /* standard deviation of the pivot, 0 for a prismatic joint */
+    float point_cov_m2[3];    /* its covariance xx, xy, yy; for a prismatic joint across the axis */
     struct grrl_vec2 axis;    /* unit vector of sliding; (0, 0) for a revolute joint */
+    float axis_sd_rad;        /* standard deviation of its direction */
     float lower;              /* smallest and largest excursion seen from the first keyframe, */
     float upper;              /* radians (b relative to a) or metres (along the axis) */
 };
