@@ -22,6 +22,7 @@ void grrl_perception_config_default(struct grrl_perception_config *config)
         .gap_m = 0.1f,
         .large_m = 0.15f,
         .min_features = 4,
+        .static_background = true,
     };
 }
 
@@ -376,7 +377,7 @@ enum grrl_status grrl_perception_update(struct grrl_perception *perception)
         return GRRL_ERR_NONE;
     }
     grrl_bodies_update(perception);
-    grrl_joints_update(perception);
+    grrl_structure_update(perception);
     return GRRL_OK;
 }
 
