@@ -30,9 +30,10 @@ static void fit_body(struct grrl_perception *p, uint8_t body)
 }
 
 /* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
-static float cost_limit(uint16_t n)
+static float cost_limit(const struct grrl_perception *p, uint16_t n)
 {
-    return 2.0f * (float)n + 4.0f * grrl_sqrt(4.0f * (float)n) + 4.0f;
+    float limit = 2.0f * (float)n + 4.0f * grrl_sqrt(4.0f * (float)n) + 4.0f;
+    return limit * grrl_sqrt(p->config.slack);
 }
 
 /* Whether a feature left its place at any time. */
@@ -57,7 +58,7 @@ static bool moves(const struct grrl_perception *p, uint16_t slot)
             n++;
         }
     }
-    return n > 0 && cost >= cost_limit(n);
+    return n > 0 && cost >= cost_limit(p, n);
 }
 
 /* Whether a body has moved on the table at all. */
@@ -98,6 +99,7 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
     struct grrl_perception_pose poses[GRRL_MAX_KEYFRAMES];
     grrl_rigid_fit(p, slots, n, shape, poses, 1);
     float evidence = 0.0f;
+    float allowance = MERGE_FREE * p->config.slack;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float saved = 0.0f;
         const struct grrl_perception_pose *pa = &p->pose[k][a];
@@ -119,7 +121,7 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
                                                  grrl_transform(own->pose, p->shape[slot]));
             saved += (together < 100.0f ? together : 100.0f) - (alone < 100.0f ? alone : 100.0f);
         }
-        evidence += saved > MERGE_FREE ? saved - MERGE_FREE : 0.0f;
+        evidence += saved > allowance ? saved - allowance : 0.0f;
     }
     return evidence;
 }
@@ -161,7 +163,7 @@ static void merge_bodies(struct grrl_perception *p)
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (merge_evidence(p, a, b) >= MERGE_EVIDENCE) {
+            if (merge_evidence(p, a, b) >= MERGE_EVIDENCE * p->config.slack) {
                 continue;
             }
             for (uint16_t i = 0; i < p->n_slots; i++) {
@@ -195,7 +197,7 @@ static bool reassign_once(struct grrl_perception *p)
             }
             float cost =
                 grrl_rigid_cost(p, i, local, &p->pose[0][b], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
-            float excess = cost - cost_limit(n) - (b == own ? 2.0f : 0.0f);
+            float excess = cost - cost_limit(p, n) - (b == own ? 2.0f : 0.0f);
             if (n > 0 && excess < best_excess) {
                 best = b;
                 best_excess = excess;

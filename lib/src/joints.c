@@ -13,7 +13,10 @@
 #define FREE_COST 14.0f      /* chi squared a free pose costs in a keyframe that needs it */
 #define FREE_COST_MAX 140.0f /* neighbouring keyframes are not independent: no more than this */
 #define TYPE_MARGIN 8.0f     /* chi squared by which one type must be better than the other */
-#define EXCITED_SIGMAS 5.0f  /* relative motion in standard deviations */
+#define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
+#define TURN_EVIDENCE_MAX 30.0f
+#define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
+#define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
@@ -27,6 +30,7 @@ struct relative {
 struct motion {
     uint8_t n;
     struct relative at[GRRL_MAX_KEYFRAMES];
+    bool at_rest[GRRL_MAX_KEYFRAMES];
     float noise2;
     float c0; /* mean rotation */
     float s0;
@@ -44,6 +48,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
         if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
             continue;
         }
+        motion->at_rest[motion->n] = p->keyframe[k].at_rest;
         struct relative *r = &motion->at[motion->n++];
         r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
         r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
@@ -301,19 +306,89 @@ static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evi
     return true;
 }
 
-/* Probabilities of the three models with equal priors, from their chi squared. */
-static void model_probabilities(float revolute, float prismatic, float free, float *p)
+/*
+ * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
+ * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
+ * distance from the pivot, tells that it stays where it is.
+ */
+static float curvature_evidence(const struct grrl_perception *p, const struct motion *motion,
+                                const struct grrl_joint_fit *fit)
 {
-    float chi2[3] = {revolute, prismatic, free};
-    float least = revolute < prismatic ? revolute : prismatic;
-    least = free < least ? free : least;
+    float a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
+    float b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
+    float lever2 = a2 > b2 ? a2 : b2;
+    float w = 0.0f;
+    float m[5] = {0.0f}; /* moments of the turn, weighted */
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float wk = 1.0f / point_variance(p, motion, r, a2, b2);
+        float turn = turn_from_mean(motion, r);
+        float power = wk;
+        for (int i = 0; i < 5; i++) {
+            m[i] += power;
+            power *= turn;
+        }
+        w += wk;
+    }
+    /* what remains of turn^2 / 2 after regression on 1 and turn */
+    float mean = m[1] / w;
+    float var = m[2] - w * mean * mean;
+    float cov = m[3] - mean * m[2];
+    float sum = m[4] - m[2] * m[2] / w;
+    float rest = var > 0.0f ? sum - cov * cov / var : 0.0f;
+    return rest > 0.0f ? 0.25f * lever2 * rest : 0.0f;
+}
+
+/*
+ * What the motion says for sliding: two things that move in parallel look the same. They are tied
+ * if they turned together, or slid along the same line in several pushes.
+ */
+static float sliding_evidence(const struct grrl_perception *p, const struct motion *motion,
+                              const struct grrl_joint_fit *fit)
+{
+    const struct grrl_pose *first = &motion->at[0].pa->pose;
+    float turned = 0.0f;
+    float pushes = -1.0f;
+    float last = grrl_vec2_dot(motion->at[0].d, fit->axis_in_a);
+    for (uint8_t k = 1; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float turn = first->c * r->pa->pose.s - first->s * r->pa->pose.c;
+        turned += turn * turn / turn_variance(p, motion, r);
+        float at = grrl_vec2_dot(r->d, fit->axis_in_a);
+        if (motion->at_rest[k]) {
+            float slid = at > last ? at - last : last - at;
+            pushes += slid > p->config.min_slide_m ? 1.0f : 0.0f;
+            last = at;
+        }
+    }
+    turned = turned < TURN_EVIDENCE_MAX ? turned : TURN_EVIDENCE_MAX;
+    return turned + (pushes > 0.0f ? PUSH_EVIDENCE * pushes : 0.0f);
+}
+
+/*
+ * Probabilities of the three models from their chi squared. A free motion explains also what a
+ * joint explains, and is then as likely as the joint but for what the motion tells beyond first
+ * order.
+ */
+static void model_probabilities(const struct grrl_perception *p, const struct motion *motion,
+                                const struct grrl_joint_fit *revolute,
+                                const struct grrl_joint_fit *prismatic, float free,
+                                float *probability)
+{
+    bool turns = revolute->excess < prismatic->excess;
+    float tested =
+        turns ? curvature_evidence(p, motion, revolute) : sliding_evidence(p, motion, prismatic);
+    float untested = (turns ? revolute->excess : prismatic->excess) + tested + JOINT_PRIOR;
+    float chi2[3] = {revolute->excess, prismatic->excess, free < untested ? free : untested};
+    float least = turns ? chi2[0] : chi2[1];
+    least = chi2[2] < least ? chi2[2] : least;
     float sum = 0.0f;
     for (int i = 0; i < 3; i++) {
-        p[i] = grrl_exp(-0.5f * (chi2[i] - least));
-        sum += p[i];
+        probability[i] = grrl_exp(-0.5f * (chi2[i] - least));
+        sum += probability[i];
     }
     for (int i = 0; i < 3; i++) {
-        p[i] /= sum;
+        probability[i] /= sum;
     }
 }
 
@@ -338,6 +413,6 @@ bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    model_probabilities(revolute.excess, prismatic.excess, free, e->p);
+    model_probabilities(p, &motion, &revolute, &prismatic, free, e->p);
     return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
 }
