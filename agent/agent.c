@@ -1,0 +1,181 @@
+/* Life of the agent, messages coming in, sessions. */
+#include "agent.h"
+
+#include <string.h>
+
+#include "agent_internal.h"
+
+enum { SILENCE_US = 1000000, STATUS_PERIOD_US = 500000 };
+
+int64_t agent_now_us(const struct grrl_agent *agent)
+{
+    return agent->config.now_us(agent->config.context);
+}
+
+static void emit(struct grrl_agent *agent, const struct grrl_agent_event *event)
+{
+    if (agent->config.on_event != NULL)
+        agent->config.on_event(agent->config.context, event);
+}
+
+void agent_note(struct grrl_agent *agent, const char *text)
+{
+    struct grrl_agent_event event = {.kind = GRRL_AGENT_NOTE, .text = text};
+    emit(agent, &event);
+}
+
+void agent_event(struct grrl_agent *agent, enum grrl_agent_event_kind kind)
+{
+    struct grrl_agent_event event = {
+        .kind = kind,
+        .decision = &agent->decision,
+        .lesson = &agent->lesson,
+        .trial_id = agent->trial_id,
+        .pushes = agent->cmd_seq,
+        .outcome = agent->trial.outcome,
+    };
+    emit(agent, &event);
+}
+
+/* Counts a message; tells of the first malformed one, later ones only count. */
+static bool accepted(struct grrl_agent *agent, bool good, const struct grrl_wire_why *why)
+{
+    agent->counts.received++;
+    if (good)
+        return true;
+    if (agent->counts.rejected++ == 0)
+        agent_note(agent, why->text);
+    return false;
+}
+
+/*
+ * Whether a message comes from the plant the agent deals with. Another session takes over when the
+ * known one has been silent: it was restarted. An observer's clock is that of the messages, because
+ * a log is read faster than it was written.
+ */
+static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t utime)
+{
+    int64_t now = agent->config.observe ? utime : agent_now_us(agent);
+    if (agent->plant_session_id != 0 && session_id != agent->plant_session_id) {
+        if (now - agent->plant_heard_us < SILENCE_US) {
+            agent->counts.foreign++;
+            return false;
+        }
+        agent_note(agent, "the simulator or tracker was restarted, the trial is abandoned");
+        agent_abandon(agent);
+        memset(&agent->trial, 0, sizeof agent->trial);
+        agent->seq = 0;
+    }
+    agent->plant_session_id = session_id;
+    agent->plant_heard_us = now;
+    return true;
+}
+
+static void on_points(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct grrl_agent *agent = user;
+    struct grrl_wire_why why;
+    (void)channel;
+    bool good = grrl_wire_decode_points(buffer->data, buffer->data_size, &agent->points, &why);
+    const grrl_points_t *points = &agent->points.message;
+    if (accepted(agent, good, &why) && known_plant(agent, points->session_id, points->utime))
+        agent_take_frame(agent, points);
+}
+
+static void on_trial(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct grrl_agent *agent = user;
+    struct grrl_wire_why why;
+    grrl_trial_t trial;
+    (void)channel;
+    bool good = grrl_wire_decode_trial(buffer->data, buffer->data_size, &trial, &why);
+    if (accepted(agent, good, &why) && known_plant(agent, trial.session_id, trial.utime))
+        agent_take_trial(agent, &trial);
+}
+
+static void on_push_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct grrl_agent *agent = user;
+    struct grrl_wire_why why;
+    grrl_push_status_t status;
+    (void)channel;
+    bool good = grrl_wire_decode_push_status(buffer->data, buffer->data_size, &status, &why);
+    if (!accepted(agent, good, &why))
+        return;
+    if (agent->config.observe || status.agent_session_id == agent->config.session_id)
+        agent_take_status(agent, &status);
+}
+
+static void on_decision(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct grrl_agent *agent = user;
+    struct grrl_wire_why why;
+    grrl_decision_t decision;
+    (void)channel;
+    bool good = grrl_wire_decode_decision(buffer->data, buffer->data_size, &decision, &why);
+    if (accepted(agent, good, &why))
+        agent_take_decision(agent, &decision);
+}
+
+static enum grrl_status subscribe(struct grrl_agent *agent)
+{
+    const struct {
+        const char *channel;
+        lcm_msg_handler_t handler;
+    } wanted[GRRL_AGENT_SUBSCRIPTIONS] = {
+        {GRRL_CHANNEL_POINTS, on_points},
+        {GRRL_CHANNEL_TRIAL, on_trial},
+        {GRRL_CHANNEL_PUSH_STATUS, on_push_status},
+        {GRRL_CHANNEL_DECISION, on_decision},
+    };
+    for (int i = 0; i < GRRL_AGENT_SUBSCRIPTIONS; i++) {
+        if (wanted[i].handler == on_decision && !agent->config.observe)
+            continue;
+        agent->subscriptions[i] =
+            lcm_subscribe(agent->lcm, wanted[i].channel, wanted[i].handler, agent);
+        if (agent->subscriptions[i] == NULL)
+            return GRRL_ERR_IO;
+        /* 0 is unbounded: LCM's own default drops the newest of 30 without a word. */
+        (void)lcm_subscription_set_queue_capacity(agent->subscriptions[i], 0);
+    }
+    return GRRL_OK;
+}
+
+enum grrl_status grrl_agent_init(struct grrl_agent *agent, const struct grrl_agent_config *config,
+                                 lcm_t *lcm)
+{
+    memset(agent, 0, sizeof *agent);
+    agent->config = *config;
+    agent->lcm = lcm;
+    grrl_wire_bind_model(&agent->model);
+    grrl_wire_bind_points(&agent->points);
+    enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, config->states,
+                                                config->states_capacity, config->experiences,
+                                                config->experiences_capacity);
+    if (status != GRRL_OK)
+        return status;
+    return subscribe(agent);
+}
+
+void grrl_agent_tick(struct grrl_agent *agent)
+{
+    int64_t now = agent_now_us(agent);
+    if (agent->status_us != 0 && now - agent->status_us < STATUS_PERIOD_US)
+        return;
+    agent->status_us = now;
+    agent_publish_status(agent);
+}
+
+bool grrl_agent_finished(const struct grrl_agent *agent)
+{
+    return agent->finished;
+}
+
+void grrl_agent_close(struct grrl_agent *agent)
+{
+    agent_abandon(agent);
+    for (int i = 0; i < GRRL_AGENT_SUBSCRIPTIONS; i++)
+        if (agent->subscriptions[i] != NULL)
+            (void)lcm_unsubscribe(agent->lcm, agent->subscriptions[i]);
+    memset(agent->subscriptions, 0, sizeof agent->subscriptions);
+}

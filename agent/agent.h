@@ -1,0 +1,110 @@
+/*
+ * agent.h: the learner on its wires, driven by events.
+ *
+ * The core subscribes and publishes on an lcm_t of the caller and asks the caller for the time; it
+ * starts no thread, waits for nothing and touches no file. docs/messages.md has the protocol.
+ *
+ * Order of calls: grrl_agent_init; load experiences into agent.learner.store if there are any; then
+ * lcm_handle and grrl_agent_tick in turns (tick at least every 100 ms) until grrl_agent_finished;
+ * grrl_agent_close.
+ */
+#ifndef GRRL_AGENT_H
+#define GRRL_AGENT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <lcm/lcm.h>
+
+#include "grrl/learner.h"
+#include "wire.h"
+
+enum grrl_agent_event_kind {
+    GRRL_AGENT_NOTE,     /* something to tell the user: text */
+    GRRL_AGENT_DECIDED,  /* decision */
+    GRRL_AGENT_LEARNED,  /* lesson, trial_id, pushes */
+    GRRL_AGENT_TRIAL_END /* outcome, trial_id, pushes; a good time to save */
+};
+
+struct grrl_agent_event {
+    enum grrl_agent_event_kind kind;
+    const char *text;
+    const grrl_decision_t *decision;
+    const struct grrl_lesson *lesson;
+    int32_t trial_id;
+    int32_t pushes;
+    int8_t outcome; /* GRRL_TRIAL_T_.. */
+};
+
+struct grrl_agent_config {
+    struct grrl_learner_config learner;
+    int64_t session_id; /* random, above 0, another one in each run */
+    bool observe;       /* learn from the decisions on the wire, send nothing */
+    int64_t (*now_us)(void *context);
+    void (*on_event)(void *context, const struct grrl_agent_event *event);
+    void *context;
+    struct grrl_experience_state *states; /* memory, see grrl_experience_init */
+    uint16_t states_capacity;
+    struct grrl_experience *experiences;
+    uint16_t experiences_capacity;
+};
+
+struct grrl_agent_counts {
+    int64_t received; /* messages of all channels */
+    int64_t lost;     /* gaps in the frames' seq */
+    int64_t repeated; /* seen before */
+    int64_t rejected; /* malformed */
+    int64_t foreign;  /* of another session */
+};
+
+enum { GRRL_AGENT_SUBSCRIPTIONS = 4 };
+
+struct grrl_agent {
+    struct grrl_learner learner;
+    struct grrl_agent_counts counts;
+
+    /* private */
+    struct grrl_agent_config config;
+    lcm_t *lcm;
+    lcm_subscription_t *subscriptions[GRRL_AGENT_SUBSCRIPTIONS];
+    int64_t status_us;   /* when the last agent_status_t went out */
+    int64_t answered_us; /* when the last answer went out */
+
+    int64_t plant_session_id; /* 0: none yet */
+    int64_t plant_heard_us;
+    bool lock_step;
+    bool finished;
+
+    grrl_trial_t trial; /* the newest taken in; revision 0: none */
+    uint8_t stage;
+    int32_t trial_id; /* of the learner's trial */
+    int32_t cmd_seq;  /* the last push commanded (observing: seen) */
+    int64_t seq;      /* the newest frame taken in */
+    bool adopted;     /* the learner knows what push cmd_seq is */
+    int rest_frames;  /* since the last motion, for senders that do not tell the phase */
+    int32_t rest_ack;
+
+    grrl_push_status_t status; /* the newest of this trial's pushes; session_id 0: none */
+    grrl_decision_t decision;  /* of cmd_seq; observing: the newest seen */
+    grrl_push_command_t command;
+    struct grrl_wire_model model;
+    struct grrl_wire_points points;
+    struct grrl_lesson lesson;
+    uint8_t bytes[GRRL_WIRE_MAX_BYTES];
+};
+
+/* GRRL_ERR_ARGUMENT: a parameter of the learner is out of range; GRRL_ERR_IO: LCM refuses. The
+ * agent must stay where it is until grrl_agent_close. */
+GRRL_MUST_USE enum grrl_status grrl_agent_init(struct grrl_agent *agent,
+                                               const struct grrl_agent_config *config, lcm_t *lcm);
+
+/* What is due by the clock: the status at 2 Hz. */
+void grrl_agent_tick(struct grrl_agent *agent);
+
+/* The supervisor has no further trial. */
+bool grrl_agent_finished(const struct grrl_agent *agent);
+
+/* Abandons the trial under way and unsubscribes. */
+void grrl_agent_close(struct grrl_agent *agent);
+
+#endif

@@ -1,0 +1,188 @@
+/* Messages going out: model, decision, command, status. */
+#include <string.h>
+
+#include "agent_internal.h"
+
+static void publish(struct grrl_agent *agent, const char *channel, int size,
+                    const struct grrl_wire_why *why)
+{
+    if (size < 0)
+        agent_note(agent, why->text);
+    else if (lcm_publish(agent->lcm, channel, agent->bytes, (unsigned)size) != 0)
+        agent_note(agent, "LCM could not send a message");
+}
+
+static void make_links(const struct grrl_model *model, struct grrl_wire_model *out)
+{
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
+        const struct grrl_body *body = &model->body[i];
+        out->link_number[i] = (int16_t)body->number;
+        out->link_x[i] = body->centroid_m.x;
+        out->link_y[i] = body->centroid_m.y;
+        out->link_angle[i] = grrl_atan2(body->axis.y, body->axis.x);
+        out->link_length[i] = body->length_m;
+        out->link_width[i] = body->width_m;
+        out->link_size[i] = (int8_t)(body->properties & 0x7f);
+    }
+}
+
+static void make_joints(const struct grrl_model *model, struct grrl_wire_model *out)
+{
+    for (uint8_t i = 0; i < model->n_joints; i++) {
+        const struct grrl_joint *joint = &model->joint[i];
+        out->joint_a[i] = (int8_t)joint->a;
+        out->joint_b[i] = (int8_t)joint->b;
+        out->joint_type[i] = (int8_t)joint->type;
+        out->joint_probability[i] = joint->probability;
+        out->joint_x[i] = joint->point_m.x;
+        out->joint_y[i] = joint->point_m.y;
+        out->joint_angle[i] = grrl_atan2(joint->axis.y, joint->axis.x);
+        out->joint_lower[i] = joint->lower;
+        out->joint_upper[i] = joint->upper;
+    }
+}
+
+static void make_features(const struct grrl_model *model, struct grrl_wire_model *out)
+{
+    for (uint16_t i = 0; i < model->n_features; i++) {
+        uint8_t body = model->feature_body[i];
+        out->feature_id[i] = model->feature_id[i];
+        if (body == GRRL_FEATURE_BACKGROUND)
+            out->feature_link[i] = GRRL_MODEL_T_BACKGROUND;
+        else if (body == GRRL_FEATURE_NONE)
+            out->feature_link[i] = GRRL_MODEL_T_UNASSIGNED;
+        else
+            out->feature_link[i] = (int8_t)body;
+    }
+}
+
+void agent_make_model(struct grrl_agent *agent)
+{
+    const struct grrl_model *model = grrl_perception_model(&agent->learner.perception);
+    grrl_model_t *message = &agent->model.message;
+    message->session_id = agent->config.session_id;
+    message->trial_id = agent->trial_id;
+    message->cmd_seq = agent->cmd_seq;
+    message->n_links = model->n_bodies;
+    message->n_joints = model->n_joints;
+    message->n_features = model->n_features;
+    make_links(model, &agent->model);
+    make_joints(model, &agent->model);
+    make_features(model, &agent->model);
+}
+
+static void make_command(struct grrl_agent *agent, const struct grrl_push *push)
+{
+    grrl_push_command_t *command = &agent->command;
+    memset(command, 0, sizeof *command);
+    command->kind = GRRL_PUSH_COMMAND_T_PUSH;
+    command->start[0] = push->start_m.x;
+    command->start[1] = push->start_m.y;
+    command->end[0] = push->end_m.x;
+    command->end[1] = push->end_m.y;
+    command->travel = push->travel_m;
+    command->speed = push->speed_m_s;
+    command->force = push->force_n;
+    command->timeout = push->timeout_s;
+}
+
+void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *decision)
+{
+    const struct grrl_choice *choice = &decision->choice;
+    grrl_decision_t *message = &agent->decision;
+    memset(message, 0, sizeof *message);
+    message->session_id = agent->config.session_id;
+    message->trial_id = agent->trial_id;
+    message->cmd_seq = agent->cmd_seq;
+    message->link_number = (int16_t)decision->body_number;
+    message->direction_deg = (int16_t)grrl_direction_deg[choice->direction];
+    message->reason = (int8_t)choice->reason;
+    message->experience = -1;
+    if (choice->reason == GRRL_CHOICE_EXPLOIT) {
+        message->level = (int8_t)choice->from.level;
+        message->distance = choice->from.distance;
+        message->experience = choice->from.experience;
+        message->value = choice->value;
+        message->lower = choice->lower;
+        message->upper = choice->upper;
+    }
+    message->phi = choice->phi;
+    message->last_reward = agent->lesson.reward;
+    message->last_target = agent->lesson.target;
+    make_command(agent, &decision->push);
+}
+
+static void publish_model(struct grrl_agent *agent, int64_t now)
+{
+    struct grrl_wire_why why;
+    agent->model.message.utime = now;
+    publish(agent, GRRL_CHANNEL_MODEL,
+            grrl_wire_encode_model(&agent->model.message, GRRL_WIRE_MAX_BYTES, agent->bytes, &why),
+            &why);
+}
+
+static void publish_decision(struct grrl_agent *agent, int64_t now)
+{
+    struct grrl_wire_why why;
+    agent->decision.utime = now;
+    publish(agent, GRRL_CHANNEL_DECISION,
+            grrl_wire_encode_decision(&agent->decision, GRRL_WIRE_MAX_BYTES, agent->bytes, &why),
+            &why);
+}
+
+/* The cached push, or WAIT; either way with the newest frame and revision taken in. */
+static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
+{
+    struct grrl_wire_why why;
+    grrl_push_command_t command;
+    memset(&command, 0, sizeof command);
+    if (push)
+        command = agent->command;
+    command.utime = now;
+    command.session_id = agent->config.session_id;
+    command.plant_session_id = agent->plant_session_id;
+    command.points_seq = agent->seq;
+    command.trial_id = agent->stage == STAGE_NONE ? agent->trial.trial_id : agent->trial_id;
+    command.trial_revision = agent->trial.revision;
+    command.cmd_seq = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq;
+    publish(agent, GRRL_CHANNEL_PUSH_COMMAND,
+            grrl_wire_encode_push_command(&command, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
+}
+
+void agent_answer(struct grrl_agent *agent)
+{
+    if (agent->config.observe)
+        return;
+    int64_t now = agent_now_us(agent);
+    agent->answered_us = now;
+    if (agent->stage == STAGE_JUDGING)
+        publish_model(agent, now);
+    if (agent->stage == STAGE_COMMANDED)
+        publish_decision(agent, now);
+    publish_command(agent, now, agent->stage == STAGE_COMMANDED);
+}
+
+void agent_publish_status(struct grrl_agent *agent)
+{
+    if (agent->config.observe)
+        return;
+    struct grrl_wire_why why;
+    const struct grrl_experience_store *store = &agent->learner.store;
+    grrl_agent_status_t status = {
+        .utime = agent_now_us(agent),
+        .session_id = agent->config.session_id,
+        .plant_session_id = agent->plant_session_id,
+        .trial_id = agent->stage == STAGE_NONE ? 0 : agent->trial_id,
+        .pushes = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq,
+        .experiences = store->n_experiences,
+        .capacity = store->experiences_capacity,
+        .evictions = (int32_t)(store->evictions & INT32_MAX),
+        .received = agent->counts.received,
+        .lost = agent->counts.lost,
+        .repeated = agent->counts.repeated,
+        .rejected = agent->counts.rejected,
+        .foreign = agent->counts.foreign,
+    };
+    publish(agent, GRRL_CHANNEL_AGENT_STATUS,
+            grrl_wire_encode_agent_status(&status, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
+}

@@ -1,0 +1,226 @@
+/* grrl-agent: options, files, signals and lines on the terminal around the agent's core. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "agent.h"
+#include "options.h"
+#include "store_file.h"
+
+/* How long one lcm_handle_timeout waits; the tick needs 100 ms. */
+enum { POLL_MS = 50 };
+
+static volatile sig_atomic_t stop;
+
+static struct grrl_agent agent; /* large, and there is one */
+
+struct run {
+    struct grrl_agent_options options;
+    bool failed;
+    int32_t trials; /* that count */
+    int64_t pushes; /* in them */
+};
+
+static void on_signal(int number)
+{
+    (void)number;
+    stop = 1;
+}
+
+static int64_t now_us(void *context)
+{
+    struct timespec now;
+    (void)context;
+    (void)clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+static int64_t random_session(void)
+{
+    int64_t session = 0;
+    int fd = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    if (fd >= 0) {
+        if (read(fd, &session, sizeof session) != (ssize_t)sizeof session)
+            session = 0;
+        (void)close(fd);
+    }
+    session ^= now_us(NULL) ^ (int64_t)getpid() << 32;
+    session &= INT64_MAX;
+    return session != 0 ? session : 1;
+}
+
+static void save(struct run *run)
+{
+    struct grrl_store_error error;
+    if (run->options.store == NULL ||
+        grrl_store_file_save(run->options.store, &agent.learner.store, &error))
+        return;
+    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", error.text);
+    run->failed = true;
+}
+
+static void explain(const grrl_decision_t *decision)
+{
+    static const char *const reasons[] = {"at random", "new action", "best bound", "adopted"};
+    static const char *const levels[] = {"same structure", "same structure, properties dropped",
+                                         "sub-structure"};
+    (void)printf("trial %" PRId32 " push %" PRId32 ": f%d at %d deg, %s", decision->trial_id,
+                 decision->cmd_seq, decision->link_number, decision->direction_deg,
+                 reasons[decision->reason]);
+    if (decision->reason == GRRL_DECISION_T_EXPLOIT)
+        (void)printf(" %.2f (%.2f to %.2f) from experience %" PRId32 ", %s, distance %d",
+                     (double)decision->value, (double)decision->lower, (double)decision->upper,
+                     decision->experience, levels[decision->level], decision->distance);
+    (void)printf("; phi %.2f, last reward %g\n", (double)decision->phi,
+                 (double)decision->last_reward);
+}
+
+static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
+{
+    static const char *const outcomes[] = {"ended", "discovered", "capped", "aborted"};
+    if (event->outcome != GRRL_TRIAL_T_ABORTED) {
+        run->trials++;
+        run->pushes += event->pushes;
+    }
+    if (!run->options.quiet)
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
+                     event->pushes, outcomes[event->outcome],
+                     (unsigned)agent.learner.store.n_experiences);
+    save(run);
+}
+
+static void on_event(void *context, const struct grrl_agent_event *event)
+{
+    struct run *run = context;
+    switch (event->kind) {
+    case GRRL_AGENT_NOTE:
+        if (!run->options.quiet)
+            (void)fprintf(stderr, "grrl-agent: %s\n", event->text);
+        break;
+    case GRRL_AGENT_DECIDED:
+        if (run->options.explain)
+            explain(event->decision);
+        break;
+    case GRRL_AGENT_LEARNED:
+        if (event->trial_id == 0) /* without a supervisor there is no end of a trial to save at */
+            save(run);
+        break;
+    case GRRL_AGENT_TRIAL_END:
+        end_of_trial(run, event);
+        break;
+    }
+    (void)fflush(stdout);
+}
+
+static lcm_t *open_lcm(const char *url)
+{
+    lcm_t *lcm = lcm_create(url);
+    if (lcm != NULL && lcm_get_fileno(lcm) >= 0)
+        return lcm;
+    (void)fprintf(stderr, "grrl-agent: LCM does not start. If this machine has no network:\n"
+                          "  ip link set lo up; ip route add 224.0.0.0/4 dev lo\n"
+                          "or name another provider with --lcm-url.\n");
+    if (lcm != NULL)
+        lcm_destroy(lcm);
+    return NULL;
+}
+
+static void catch_signals(void)
+{
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    (void)sigaction(SIGINT, &action, NULL);
+    (void)sigaction(SIGTERM, &action, NULL);
+}
+
+/* Until the trials are over, the log ends, a signal comes or LCM fails. */
+static void loop(struct run *run, lcm_t *lcm)
+{
+    const char *url = run->options.lcm_url;
+    const char *used = url != NULL ? url : getenv("LCM_DEFAULT_URL");
+    bool is_log = used != NULL && strncmp(used, "file://", 7) == 0;
+    while (!stop && !run->failed && !grrl_agent_finished(&agent)) {
+        if (lcm_handle_timeout(lcm, POLL_MS) < 0 && !stop) {
+            if (!is_log) {
+                (void)fprintf(stderr, "grrl-agent: LCM fails to receive\n");
+                run->failed = true;
+            }
+            break;
+        }
+        grrl_agent_tick(&agent);
+    }
+}
+
+static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
+{
+    struct grrl_store_error error;
+    enum grrl_status status = grrl_agent_init(&agent, config, lcm);
+    if (status != GRRL_OK) {
+        (void)fprintf(stderr, "grrl-agent: %s\n", grrl_status_text(status));
+        return false;
+    }
+    if (run->options.store == NULL ||
+        grrl_store_file_load(run->options.store, &agent.learner.store, &error))
+        return true;
+    (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
+    return false;
+}
+
+static int run_agent(struct run *run)
+{
+    struct grrl_agent_config config = {
+        .learner = run->options.learner,
+        .session_id = random_session(),
+        .observe = run->options.observe,
+        .now_us = now_us,
+        .on_event = on_event,
+        .context = run,
+        .states_capacity = run->options.experiences,
+        .experiences_capacity = run->options.experiences,
+    };
+    config.states = calloc(config.states_capacity, sizeof *config.states);
+    config.experiences = calloc(config.experiences_capacity, sizeof *config.experiences);
+    lcm_t *lcm = NULL;
+    bool started = false;
+    if (config.states != NULL && config.experiences != NULL)
+        lcm = open_lcm(run->options.lcm_url);
+    if (lcm != NULL)
+        started = start(run, &config, lcm);
+    if (started) {
+        loop(run, lcm);
+        grrl_agent_close(&agent);
+        save(run);
+    }
+    if (lcm != NULL)
+        lcm_destroy(lcm);
+    free(config.states);
+    free(config.experiences);
+    return started && !run->failed ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+int main(int argc, char **argv)
+{
+    static struct run run;
+    switch (grrl_agent_options_parse(argc, argv, &run.options)) {
+    case GRRL_OPTIONS_DONE:
+        return EXIT_SUCCESS;
+    case GRRL_OPTIONS_BAD:
+        return 2;
+    case GRRL_OPTIONS_RUN:
+        break;
+    }
+    catch_signals();
+    int status = run_agent(&run);
+    if (run.trials > 0 && !run.options.quiet)
+        (void)printf("%" PRId32 " trials, %.2f pushes on average\n", run.trials,
+                     (double)run.pushes / run.trials);
+    return status;
+}

@@ -1,0 +1,227 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef GRRL_VERSION
+#define GRRL_VERSION "unknown"
+#endif
+
+enum option_id {
+    OPT_POLICY = 256,
+    OPT_STORE,
+    OPT_EXPERIENCES,
+    OPT_SEED,
+    OPT_ALPHA,
+    OPT_GAMMA,
+    OPT_BETA,
+    OPT_Z,
+    OPT_NOISE,
+    OPT_OBSERVE,
+    OPT_LCM_URL,
+    OPT_QUIET,
+    OPT_EXPLAIN,
+    OPT_HELP,
+    OPT_VERSION
+};
+
+/* The one list of options: getopt's table and --help are both made from it. */
+static const struct {
+    enum option_id id;
+    const char *name;
+    const char *argument; /* NULL: it has none */
+    const char *help;
+} table[] = {
+    {OPT_POLICY, "policy", "learn|random", "how pushes are chosen (learn)"},
+    {OPT_STORE, "store", "FILE", "load experiences from FILE and save them there after each trial"},
+    {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 60000 (1000)"},
+    {OPT_SEED, "seed", "N", "seed of all random choices (1)"},
+    {OPT_ALPHA, "alpha", "X", "learning rate, above 0 to 1"},
+    {OPT_GAMMA, "gamma", "X", "discount of later rewards, 0 to below 1"},
+    {OPT_BETA, "beta", "X", "exploration: a new action has probability exp(-beta phi) (2)"},
+    {OPT_Z, "z", "X", "width of the confidence bounds of Interval Estimation"},
+    {OPT_NOISE, "noise", "MM", "standard deviation of a tracked point, millimetres (0.7)"},
+    {OPT_OBSERVE, "observe", NULL, "learn from another agent's pushes, live or from a log"},
+    {OPT_LCM_URL, "lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0"},
+    {OPT_QUIET, "quiet", NULL, "print errors only"},
+    {OPT_EXPLAIN, "explain", NULL, "print a line for each decision: what and why"},
+    {OPT_HELP, "help", NULL, "print this text"},
+    {OPT_VERSION, "version", NULL, "print the version"},
+};
+
+enum { N_OPTIONS = sizeof table / sizeof table[0] };
+
+static void print_help(void)
+{
+    (void)printf("Usage: grrl-agent [OPTION]...\n"
+                 "Learns to find out how articulated objects move by pushing them.\n"
+                 "Waits for feature points on LCM; grrl-sim sends some.\n\n");
+    for (size_t i = 0; i < N_OPTIONS; i++) {
+        char left[40];
+        (void)snprintf(left, sizeof left, "--%s%s%s", table[i].name,
+                       table[i].argument != NULL ? " " : "",
+                       table[i].argument != NULL ? table[i].argument : "");
+        (void)printf("  %-22s %s\n", left, table[i].help);
+    }
+    (void)printf("\nWithout --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
+                 "Exit status: 0 all trials done, log read or stopped by a signal; 1 trouble;\n"
+                 "2 wrong command line.\n");
+}
+
+static bool bad(const char *name, const char *text, const char *right)
+{
+    (void)fprintf(stderr, "grrl-agent: --%s %s: must be %s\n", name, text, right);
+    return false;
+}
+
+static bool parse_float(const char *name, const char *text, const char *right, float *value)
+{
+    char *end;
+    float parsed = strtof(text, &end);
+    if (end == text || *end != '\0' || !isfinite(parsed))
+        return bad(name, text, right);
+    *value = parsed;
+    return true;
+}
+
+static bool parse_unsigned(const char *name, const char *text, unsigned long long low,
+                           unsigned long long high, const char *right, unsigned long long *value)
+{
+    char *end;
+    errno = 0;
+    unsigned long long parsed = strtoull(text, &end, 10);
+    bool digits = text[0] >= '0' && text[0] <= '9';
+    if (!digits || *end != '\0' || errno != 0 || parsed < low || parsed > high)
+        return bad(name, text, right);
+    *value = parsed;
+    return true;
+}
+
+static bool parse_policy(const char *text, enum grrl_policy_kind *kind)
+{
+    *kind = strcmp(text, "random") == 0 ? GRRL_POLICY_RANDOM : GRRL_POLICY_LEARN;
+    if (strcmp(text, "learn") != 0 && strcmp(text, "random") != 0)
+        return bad("policy", text, "learn or random");
+    return true;
+}
+
+static bool parse_noise(const char *text, float *noise_m)
+{
+    float mm;
+    if (!parse_float("noise", text, "millimetres, above 0 to 100", &mm))
+        return false;
+    if (!(mm > 0.0f && mm <= 100.0f))
+        return bad("noise", text, "millimetres, above 0 to 100");
+    *noise_m = mm * 0.001f;
+    return true;
+}
+
+static bool take(enum option_id id, const char *text, struct grrl_agent_options *options)
+{
+    struct grrl_policy_config *policy = &options->learner.policy;
+    unsigned long long n = 0;
+    bool good = true;
+    switch (id) {
+    case OPT_POLICY:
+        return parse_policy(text, &policy->kind);
+    case OPT_STORE:
+        options->store = text;
+        return true;
+    case OPT_EXPERIENCES:
+        good = parse_unsigned("experiences", text, 1, 60000, "a number from 1 to 60000", &n);
+        options->experiences = (uint16_t)n;
+        return good;
+    case OPT_SEED:
+        good = parse_unsigned("seed", text, 0, UINT64_MAX, "a number from 0", &n);
+        options->learner.seed = n;
+        return good;
+    case OPT_ALPHA:
+        return parse_float("alpha", text, "a number above 0 to 1", &policy->alpha);
+    case OPT_GAMMA:
+        return parse_float("gamma", text, "a number from 0 to below 1", &policy->gamma);
+    case OPT_BETA:
+        return parse_float("beta", text, "a number from 0", &policy->beta);
+    case OPT_Z:
+        return parse_float("z", text, "a number from 0", &policy->z);
+    case OPT_NOISE:
+        return parse_noise(text, &options->learner.perception.noise_m);
+    case OPT_OBSERVE:
+        options->observe = true;
+        return true;
+    case OPT_LCM_URL:
+        options->lcm_url = text;
+        return true;
+    case OPT_QUIET:
+        options->quiet = true;
+        return true;
+    case OPT_EXPLAIN:
+        options->explain = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static bool consistent(const struct grrl_agent_options *options)
+{
+    const char *field = "";
+    if (grrl_policy_config_check(&options->learner.policy, &field) != GRRL_OK) {
+        (void)fprintf(stderr, "grrl-agent: --%s is out of its range, see --help\n", field);
+        return false;
+    }
+    if (options->quiet && options->explain) {
+        (void)fprintf(stderr, "grrl-agent: --quiet and --explain contradict each other\n");
+        return false;
+    }
+    return true;
+}
+
+static void make_getopt_table(struct option *options)
+{
+    memset(options, 0, (N_OPTIONS + 1) * sizeof *options);
+    for (size_t i = 0; i < N_OPTIONS; i++) {
+        options[i].name = table[i].name;
+        options[i].has_arg = table[i].argument != NULL ? required_argument : no_argument;
+        options[i].val = (int)table[i].id;
+    }
+}
+
+enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
+                                                  struct grrl_agent_options *options)
+{
+    struct option getopt_table[N_OPTIONS + 1];
+    make_getopt_table(getopt_table);
+    memset(options, 0, sizeof *options);
+    grrl_learner_config_default(&options->learner);
+    options->learner.seed = 1;
+    options->experiences = 1000;
+    int id;
+    while ((id = getopt_long(argc, argv, "", getopt_table, NULL)) != -1) {
+        if (id == OPT_HELP) {
+            print_help();
+            return GRRL_OPTIONS_DONE;
+        }
+        if (id == OPT_VERSION) {
+            (void)printf("grrl-agent %s\n", GRRL_VERSION);
+            return GRRL_OPTIONS_DONE;
+        }
+        if (id == '?') {
+            (void)fprintf(stderr, "Try grrl-agent --help\n");
+            return GRRL_OPTIONS_BAD;
+        }
+        if (!take((enum option_id)id, optarg, options))
+            return GRRL_OPTIONS_BAD;
+    }
+    if (optind < argc) {
+        (void)fprintf(stderr, "grrl-agent: %s: there are no arguments, only options\n",
+                      argv[optind]);
+        return GRRL_OPTIONS_BAD;
+    }
+    return consistent(options) ? GRRL_OPTIONS_RUN : GRRL_OPTIONS_BAD;
+}

@@ -1,0 +1,26 @@
+/* options.h: the command line of grrl-agent. */
+#ifndef GRRL_AGENT_OPTIONS_H
+#define GRRL_AGENT_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "grrl/learner.h"
+
+struct grrl_agent_options {
+    struct grrl_learner_config learner;
+    const char *store;   /* NULL: experiences are not kept */
+    const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
+    uint16_t experiences;
+    bool observe;
+    bool quiet;
+    bool explain;
+};
+
+enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };
+
+/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
+                                                  struct grrl_agent_options *options);
+
+#endif

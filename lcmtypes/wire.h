@@ -1,0 +1,108 @@
+/*
+ * wire.h: between the bytes of a message and its struct, with every check that stands between them.
+ *
+ * The decoders that lcm-gen writes trust the wire: a count sizes an allocation. Here a message is
+ * taken only if its fingerprint is right, every count lies within its limit, every number is finite
+ * and within its documented range, every index points into its array, and the size is exact to the
+ * byte. Nothing is allocated. This is the only file of the project that checks ranges of messages.
+ *
+ * grrl_wire_decode_<type>  returns true, or false with a reason; *out is then unspecified
+ * grrl_wire_encode_<type>  the bytes written, or -1 with a reason: what would be refused on the
+ *                          other side is not sent
+ */
+#ifndef GRRL_WIRE_H
+#define GRRL_WIRE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "channels.h"
+#include "grrl_agent_status_t.h"
+#include "grrl_decision_t.h"
+#include "grrl_model_t.h"
+#include "grrl_points_t.h"
+#include "grrl_push_command_t.h"
+#include "grrl_push_status_t.h"
+#include "grrl_trial_t.h"
+
+/* What the messages can carry; at least what the library can (asserted in wire.c). */
+enum {
+    GRRL_WIRE_MAX_POINTS = 256,
+    GRRL_WIRE_MAX_LINKS = 32,
+    GRRL_WIRE_MAX_JOINTS = 64,
+    GRRL_WIRE_MAX_BYTES = 4096 /* the largest message, encoded, fits */
+};
+
+/* Why a message was refused: type, field and value, in English. */
+struct grrl_wire_why {
+    char text[128];
+};
+
+/* A message with the storage its arrays point to. Copying one leaves the copy's pointers on the
+ * original: use grrl_wire_bind_<type> on the copy. */
+struct grrl_wire_points {
+    grrl_points_t message;
+    int32_t id[GRRL_WIRE_MAX_POINTS];
+    float x[GRRL_WIRE_MAX_POINTS];
+    float y[GRRL_WIRE_MAX_POINTS];
+};
+
+struct grrl_wire_model {
+    grrl_model_t message;
+    int16_t link_number[GRRL_WIRE_MAX_LINKS];
+    float link_x[GRRL_WIRE_MAX_LINKS];
+    float link_y[GRRL_WIRE_MAX_LINKS];
+    float link_angle[GRRL_WIRE_MAX_LINKS];
+    float link_length[GRRL_WIRE_MAX_LINKS];
+    float link_width[GRRL_WIRE_MAX_LINKS];
+    int8_t link_size[GRRL_WIRE_MAX_LINKS];
+    int8_t joint_a[GRRL_WIRE_MAX_JOINTS];
+    int8_t joint_b[GRRL_WIRE_MAX_JOINTS];
+    int8_t joint_type[GRRL_WIRE_MAX_JOINTS];
+    float joint_probability[GRRL_WIRE_MAX_JOINTS];
+    float joint_x[GRRL_WIRE_MAX_JOINTS];
+    float joint_y[GRRL_WIRE_MAX_JOINTS];
+    float joint_angle[GRRL_WIRE_MAX_JOINTS];
+    float joint_lower[GRRL_WIRE_MAX_JOINTS];
+    float joint_upper[GRRL_WIRE_MAX_JOINTS];
+    int32_t feature_id[GRRL_WIRE_MAX_POINTS];
+    int8_t feature_link[GRRL_WIRE_MAX_POINTS];
+};
+
+/* Points the message's arrays at its own storage; before filling one by hand. */
+void grrl_wire_bind_points(struct grrl_wire_points *points);
+void grrl_wire_bind_model(struct grrl_wire_model *model);
+
+bool grrl_wire_decode_points(const void *data, uint32_t size, struct grrl_wire_points *out,
+                             struct grrl_wire_why *why);
+bool grrl_wire_decode_model(const void *data, uint32_t size, struct grrl_wire_model *out,
+                            struct grrl_wire_why *why);
+bool grrl_wire_decode_push_command(const void *data, uint32_t size, grrl_push_command_t *out,
+                                   struct grrl_wire_why *why);
+bool grrl_wire_decode_push_status(const void *data, uint32_t size, grrl_push_status_t *out,
+                                  struct grrl_wire_why *why);
+bool grrl_wire_decode_trial(const void *data, uint32_t size, grrl_trial_t *out,
+                            struct grrl_wire_why *why);
+bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t *out,
+                               struct grrl_wire_why *why);
+bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
+                                   struct grrl_wire_why *why);
+
+/* capacity: bytes at data; GRRL_WIRE_MAX_BYTES is enough for every message. */
+int grrl_wire_encode_points(const grrl_points_t *message, int capacity, uint8_t *data,
+                            struct grrl_wire_why *why);
+int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *data,
+                           struct grrl_wire_why *why);
+int grrl_wire_encode_push_command(const grrl_push_command_t *message, int capacity, uint8_t *data,
+                                  struct grrl_wire_why *why);
+int grrl_wire_encode_push_status(const grrl_push_status_t *message, int capacity, uint8_t *data,
+                                 struct grrl_wire_why *why);
+int grrl_wire_encode_trial(const grrl_trial_t *message, int capacity, uint8_t *data,
+                           struct grrl_wire_why *why);
+int grrl_wire_encode_decision(const grrl_decision_t *message, int capacity, uint8_t *data,
+                              struct grrl_wire_why *why);
+int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capacity, uint8_t *data,
+                                  struct grrl_wire_why *why);
+
+#endif

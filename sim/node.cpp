@@ -1,0 +1,342 @@
+/* The course of a trial as supervisor, tracker and robot see it, and messages coming in. */
+#include "node.hpp"
+
+#include <stdexcept>
+
+#include "structure.hpp"
+
+namespace grrl_sim
+{
+
+namespace
+{
+
+constexpr int rest_frames_to_settle = 10;
+constexpr int64_t silence_us = 1000000;
+
+/* The n-th trial of a seed has its own object pose, noise and friction. */
+uint64_t trial_seed(uint64_t seed, int32_t trial_id)
+{
+    grrl_random random;
+    grrl_random_init(&random, seed, static_cast<uint64_t>(trial_id));
+    uint64_t high = grrl_random_next(&random);
+    return high << 32 | grrl_random_next(&random);
+}
+
+int8_t reason_on_the_wire(PushReason reason)
+{
+    switch (reason) {
+    case PushReason::REACHED:
+        return GRRL_PUSH_STATUS_T_REACHED;
+    case PushReason::MISSED:
+        return GRRL_PUSH_STATUS_T_MISSED;
+    case PushReason::BLOCKED:
+        return GRRL_PUSH_STATUS_T_BLOCKED;
+    case PushReason::TIMEOUT:
+        return GRRL_PUSH_STATUS_T_TIMEOUT;
+    }
+    return GRRL_PUSH_STATUS_T_NONE;
+}
+
+PushCommand push_of(const grrl_push_command_t &command)
+{
+    PushCommand push;
+    push.start_m = {static_cast<double>(command.start[0]), static_cast<double>(command.start[1])};
+    push.end_m = {static_cast<double>(command.end[0]), static_cast<double>(command.end[1])};
+    push.travel_m = static_cast<double>(command.travel);
+    push.speed_m_s = static_cast<double>(command.speed);
+    push.force_limit_n = static_cast<double>(command.force);
+    push.timeout_s = static_cast<double>(command.timeout);
+    return push;
+}
+
+} // namespace
+
+Node::Node(lcm_t *lcm, NodeConfig config)
+    : lcm_(lcm), config_(std::move(config)), supervisor_(visible_structure(config_.object))
+{
+    grrl_wire_bind_points(&points_);
+    agent_heard_us_ = config_.now_us();
+    subscribe(GRRL_CHANNEL_PUSH_COMMAND, receive<&Node::on_command>);
+    subscribe(GRRL_CHANNEL_MODEL, receive<&Node::on_model>);
+    subscribe(GRRL_CHANNEL_DECISION, receive<&Node::on_decision>);
+    subscribe(GRRL_CHANNEL_AGENT_STATUS, receive<&Node::on_agent_status>);
+    begin_trial();
+}
+
+Node::~Node()
+{
+    for (lcm_subscription_t *subscription : subscriptions_)
+        (void)lcm_unsubscribe(lcm_, subscription);
+}
+
+template <void (Node::*handler)(const lcm_recv_buf_t &)>
+void Node::receive(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    Node *node = static_cast<Node *>(user);
+    if (node->config_.on_message)
+        node->config_.on_message(channel, buffer->data, buffer->data_size);
+    (node->*handler)(*buffer);
+}
+
+void Node::subscribe(const char *channel, lcm_msg_handler_t handler)
+{
+    lcm_subscription_t *subscription = lcm_subscribe(lcm_, channel, handler, this);
+    if (subscription == nullptr)
+        throw std::runtime_error(std::string("LCM refuses to subscribe to ") + channel);
+    /* 0 is unbounded: LCM's own default drops the newest of 30 without a word. */
+    (void)lcm_subscription_set_queue_capacity(subscription, 0);
+    subscriptions_.push_back(subscription);
+}
+
+/* Tells of the first malformed message, later ones only count. */
+bool Node::refuse(const grrl_wire_why &why)
+{
+    if (rejected_++ == 0)
+        note(why.text);
+    return false;
+}
+
+/*
+ * Whether a message comes from the agent of this run. Another session takes over when the known one
+ * has been silent: it was restarted, and its trial cannot go on.
+ */
+bool Node::known_agent(int64_t session_id)
+{
+    int64_t now = config_.now_us();
+    if (agent_session_id_ != 0 && session_id != agent_session_id_) {
+        if (now - agent_heard_us_ < silence_us) {
+            foreign_++;
+            return false;
+        }
+        note("the agent was restarted, its trial is aborted");
+        agent_revision_ = 0;
+        if (frames_flow())
+            end_trial(GRRL_TRIAL_T_ABORTED);
+    }
+    agent_session_id_ = session_id;
+    agent_heard_us_ = now;
+    return true;
+}
+
+void Node::on_command(const lcm_recv_buf_t &buffer)
+{
+    grrl_push_command_t command;
+    grrl_wire_why why;
+    if (!grrl_wire_decode_push_command(buffer.data, buffer.data_size, &command, &why)) {
+        refuse(why);
+        return;
+    }
+    if (command.plant_session_id == config_.session_id && known_agent(command.session_id))
+        obey(command);
+}
+
+void Node::on_agent_status(const lcm_recv_buf_t &buffer)
+{
+    grrl_agent_status_t status;
+    grrl_wire_why why;
+    if (!grrl_wire_decode_agent_status(buffer.data, buffer.data_size, &status, &why))
+        refuse(why);
+    else if (status.plant_session_id == config_.session_id)
+        (void)known_agent(status.session_id);
+}
+
+void Node::on_model(const lcm_recv_buf_t &buffer)
+{
+    grrl_wire_why why;
+    if (!grrl_wire_decode_model(buffer.data, buffer.data_size, &model_, &why)) {
+        refuse(why);
+        return;
+    }
+    const grrl_model_t &model = model_.message;
+    if (model.session_id == agent_session_id_ && model.trial_id == trial_id_)
+        judge(model);
+}
+
+void Node::on_decision(const lcm_recv_buf_t &buffer)
+{
+    grrl_decision_t decision;
+    grrl_wire_why why;
+    if (!grrl_wire_decode_decision(buffer.data, buffer.data_size, &decision, &why)) {
+        refuse(why);
+        return;
+    }
+    if (decision.session_id != agent_session_id_ || decision.trial_id != trial_id_)
+        return;
+    decision_ = decision;
+    push_if_complete();
+}
+
+bool Node::frames_flow() const
+{
+    return stage_ == Stage::RESTING || stage_ == Stage::DECIDING || stage_ == Stage::PUSHING;
+}
+
+void Node::begin_trial()
+{
+    trial_id_++;
+    pushes_ = 0;
+    rest_frames_ = 0;
+    ack_cmd_seq_ = 0;
+    command_ = {};
+    decision_ = {};
+    status_ = {};
+    world_ =
+        std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
+    stage_ = Stage::OFFER;
+    trial_.judged_cmd_seq = -1;
+    announce(GRRL_TRIAL_T_RUNNING, GRRL_TRIAL_T_NONE);
+}
+
+void Node::announce(int8_t phase, int8_t outcome)
+{
+    trial_.session_id = config_.session_id;
+    trial_.trial_id = trial_id_;
+    trial_.revision++;
+    trial_.phase = phase;
+    trial_.outcome = outcome;
+    publish_trial();
+}
+
+void Node::end_trial(int8_t outcome)
+{
+    stage_ = Stage::ENDED;
+    if (outcome != GRRL_TRIAL_T_ABORTED)
+        counted_trials_++;
+    announce(GRRL_TRIAL_T_ENDED, outcome);
+    if (config_.on_trial)
+        config_.on_trial({trial_id_, pushes_, outcome});
+}
+
+void Node::judge(const grrl_model_t &model)
+{
+    bool new_model = stage_ == Stage::DECIDING && model.cmd_seq == ack_cmd_seq_ &&
+                     trial_.judged_cmd_seq != ack_cmd_seq_;
+    if (!new_model)
+        return;
+    trial_.judged_cmd_seq = ack_cmd_seq_;
+    grrl_graph believed;
+    if (structure_of(model, believed) && supervisor_.judge(believed).correct)
+        end_trial(GRRL_TRIAL_T_DISCOVERED);
+    else if (pushes_ >= config_.cap)
+        end_trial(GRRL_TRIAL_T_CAPPED);
+    else
+        announce(GRRL_TRIAL_T_RUNNING, GRRL_TRIAL_T_NONE);
+}
+
+/* A command counts once it agrees with the newest word of the supervisor and, in lock-step, with
+ * the newest frame; whatever else comes is an answer to something older. */
+void Node::obey(const grrl_push_command_t &command)
+{
+    if (command.trial_revision != trial_.revision)
+        return;
+    agent_revision_ = command.trial_revision;
+    if (stage_ == Stage::OFFER) {
+        stage_ = Stage::RESTING;
+        frame_due_us_ = config_.now_us();
+        advance();
+    } else if (stage_ == Stage::ENDED) {
+        if (counted_trials_ < config_.trials) {
+            begin_trial();
+        } else {
+            stage_ = Stage::FINISHING;
+            finishing_us_ = config_.now_us();
+            announce(GRRL_TRIAL_T_FINISHED, GRRL_TRIAL_T_NONE);
+        }
+    } else if (stage_ == Stage::FINISHING) {
+        stage_ = Stage::DONE;
+    } else if (command.trial_id == trial_id_ && (config_.real_time || command.points_seq == seq_)) {
+        if (stage_ != Stage::DECIDING) {
+            advance();
+        } else if (command.kind == GRRL_PUSH_COMMAND_T_PUSH) {
+            command_ = command;
+            push_if_complete();
+        }
+    }
+}
+
+/* A push needs its decision, too, so that every log tells why; and the supervisor's word. */
+void Node::push_if_complete()
+{
+    int32_t next = ack_cmd_seq_ + 1;
+    if (stage_ == Stage::DECIDING && trial_.judged_cmd_seq == ack_cmd_seq_ &&
+        command_.cmd_seq == next && decision_.cmd_seq == next)
+        start_push();
+}
+
+void Node::start_push()
+{
+    ack_cmd_seq_ = command_.cmd_seq;
+    pushes_++;
+    rest_frames_ = 0;
+    std::string problem = world_->begin_push(push_of(command_));
+    if (problem.empty()) {
+        stage_ = Stage::PUSHING;
+        set_push_state(GRRL_PUSH_STATUS_T_MOVING, GRRL_PUSH_STATUS_T_NONE);
+    } else {
+        /* It counts as a push without effect: the agent sees that nothing moved. */
+        stage_ = Stage::RESTING;
+        set_push_state(GRRL_PUSH_STATUS_T_REFUSED, GRRL_PUSH_STATUS_T_BAD_COMMAND);
+        note("push refused: " + problem);
+    }
+    advance();
+}
+
+void Node::set_push_state(int8_t state, int8_t reason)
+{
+    status_.agent_session_id = agent_session_id_;
+    status_.cmd_seq = ack_cmd_seq_;
+    status_.state = state;
+    status_.reason = reason;
+    publish_push_status();
+}
+
+/* In lock-step the next frame is due as soon as the last one was answered. */
+void Node::advance()
+{
+    if (!config_.real_time && frames_flow())
+        send_frame();
+}
+
+/* Lets the world go on for a frame; the phase to tell. */
+int8_t Node::move_on()
+{
+    if (stage_ == Stage::PUSHING) {
+        if (!world_->step_frame()) {
+            stage_ = Stage::RESTING;
+            rest_frames_ = 0;
+            set_push_state(GRRL_PUSH_STATUS_T_DONE,
+                           reason_on_the_wire(world_->push_result().reason));
+        }
+        return GRRL_POINTS_T_PUSHING;
+    }
+    if (++rest_frames_ < rest_frames_to_settle)
+        return GRRL_POINTS_T_REST;
+    stage_ = Stage::DECIDING;
+    return GRRL_POINTS_T_SETTLED;
+}
+
+void Node::send_frame()
+{
+    grrl_points_t &points = points_.message;
+    points.phase = move_on();
+    points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME : GRRL_POINTS_T_LOCK_STEP;
+    points.session_id = config_.session_id;
+    points.seq = ++seq_;
+    points.trial_id = trial_id_;
+    points.ack_cmd_seq = ack_cmd_seq_;
+    world_->observe(frame_);
+    points.n_points = 0;
+    for (const TrackedFeature &feature : frame_.features) {
+        int32_t i = points.n_points;
+        if (i == GRRL_WIRE_MAX_POINTS)
+            break;
+        points.id[i] = static_cast<int32_t>(feature.id);
+        points.x[i] = static_cast<float>(feature.x_m);
+        points.y[i] = static_cast<float>(feature.y_m);
+        points.n_points++;
+    }
+    publish_points();
+}
+
+} // namespace grrl_sim

@@ -1,0 +1,153 @@
+/*
+ * node.hpp: the simulated world on LCM: tracker, robot and supervisor in one, driven by events.
+ *
+ * The node subscribes and publishes on an lcm_t of the caller and asks the caller for the time; it
+ * waits for nothing. Call lcm_handle and tick in turns, tick at least every 10 ms, until finished.
+ * docs/messages.md has the protocol.
+ */
+#ifndef GRRL_SIM_NODE_HPP
+#define GRRL_SIM_NODE_HPP
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lcm/lcm.h>
+
+#include "supervisor.hpp"
+#include "world.hpp"
+
+extern "C" {
+#include "wire.h"
+}
+
+namespace grrl_sim
+{
+
+struct TrialResult {
+    int32_t trial_id;
+    int pushes;
+    int8_t outcome; /* GRRL_TRIAL_T_.. */
+};
+
+struct NodeConfig {
+    ObjectSpec object;
+    WorldParams world;
+    uint64_t seed = 1;
+    int trials = 1; /* that are not aborted */
+    int cap = 100;  /* pushes in a trial */
+    bool real_time = false;
+    int64_t session_id = 1; /* random, above 0, another one in each run */
+
+    std::function<int64_t()> now_us; /* needed; the others may be empty */
+    std::function<void(const TrialResult &)> on_trial;
+    std::function<void(const std::string &)> on_note;
+    /* Every message, published or received, in order. */
+    std::function<void(const char *channel, const void *data, uint32_t size)> on_message;
+};
+
+class Node
+{
+public:
+    /* Throws std::runtime_error if LCM refuses a subscription. */
+    Node(lcm_t *lcm, NodeConfig config);
+    ~Node();
+    Node(const Node &) = delete;
+    Node &operator=(const Node &) = delete;
+
+    /* Sends what is due by the clock: frames in real time, repetitions. */
+    void tick();
+
+    bool finished() const { return stage_ == Stage::DONE; }
+
+    /* Since the agent was last heard of, or since the start. */
+    int64_t agent_silent_us() const { return config_.now_us() - agent_heard_us_; }
+    bool agent_known() const { return agent_session_id_ != 0; }
+
+    int64_t frames() const { return seq_; }
+    int64_t rejected() const { return rejected_; }
+    int64_t foreign() const { return foreign_; }
+
+private:
+    enum class Stage {
+        OFFER,    /* a trial is announced, the agent has not agreed yet */
+        RESTING,  /* ten frames at rest */
+        DECIDING, /* settled: model, judgement, next push */
+        PUSHING,
+        ENDED, /* the agent has not agreed yet */
+        FINISHING,
+        DONE
+    };
+
+    template <void (Node::*handler)(const lcm_recv_buf_t &)>
+    static void receive(const lcm_recv_buf_t *buffer, const char *channel, void *user);
+    void subscribe(const char *channel, lcm_msg_handler_t handler);
+    void on_command(const lcm_recv_buf_t &buffer);
+    void on_model(const lcm_recv_buf_t &buffer);
+    void on_decision(const lcm_recv_buf_t &buffer);
+    void on_agent_status(const lcm_recv_buf_t &buffer);
+    bool refuse(const grrl_wire_why &why);
+    bool known_agent(int64_t session_id);
+
+    void begin_trial();
+    void announce(int8_t phase, int8_t outcome);
+    void end_trial(int8_t outcome);
+    void judge(const grrl_model_t &model);
+    void obey(const grrl_push_command_t &command);
+    void push_if_complete();
+    void start_push();
+    void advance();
+    int8_t move_on();
+    void send_frame();
+    void set_push_state(int8_t state, int8_t reason);
+
+    void publish(const char *channel, int size, const grrl_wire_why &why);
+    void publish_trial();
+    void publish_points();
+    void publish_push_status();
+    void tick_lock_step(int64_t now);
+    void tick_real_time(int64_t now);
+    void note(const std::string &text) const;
+    bool frames_flow() const;
+
+    lcm_t *lcm_;
+    NodeConfig config_;
+    std::vector<lcm_subscription_t *> subscriptions_;
+    Supervisor supervisor_;
+    std::unique_ptr<World> world_;
+
+    Stage stage_ = Stage::OFFER;
+    int32_t trial_id_ = 0;
+    int counted_trials_ = 0;
+    int pushes_ = 0;
+    int rest_frames_ = 0;
+    int32_t ack_cmd_seq_ = 0;
+    int64_t seq_ = 0;
+
+    grrl_trial_t trial_{};
+    grrl_wire_points points_{};
+    grrl_push_status_t status_{};
+    grrl_wire_model model_{};
+    grrl_push_command_t command_{}; /* the next push, once it has come */
+    grrl_decision_t decision_{};    /* the newest */
+    Frame frame_;
+    uint8_t bytes_[GRRL_WIRE_MAX_BYTES];
+
+    int64_t agent_session_id_ = 0;
+    int64_t agent_heard_us_ = 0;
+    int32_t agent_revision_ = 0;
+    int64_t rejected_ = 0;
+    int64_t foreign_ = 0;
+
+    int64_t sent_us_ = 0; /* lock-step: when something last went out */
+    int64_t trial_us_ = 0;
+    int64_t status_us_ = 0;
+    int64_t frame_due_us_ = 0;
+    int64_t finishing_us_ = 0;
+};
+
+} // namespace grrl_sim
+
+#endif

@@ -1,0 +1,34 @@
+/* options.hpp: the command line of grrl-sim. */
+#ifndef GRRL_SIM_OPTIONS_HPP
+#define GRRL_SIM_OPTIONS_HPP
+
+#include <cstdint>
+#include <string>
+
+#include "tracker.hpp"
+
+namespace grrl_sim
+{
+
+struct Options {
+    std::string object;
+    int trials = 1;
+    uint64_t seed = 1;
+    int cap = 100;
+    TrackerParams tracker;
+    bool real_time = false;
+    bool quiet = false;
+    double agent_timeout_s = 0.0; /* 0: wait for ever */
+    std::string log;              /* empty: none, like the next two */
+    std::string results;
+    std::string lcm_url;
+};
+
+enum class OptionsResult { RUN, DONE, BAD };
+
+/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+OptionsResult parse_options(int argc, char **argv, Options &options);
+
+} // namespace grrl_sim
+
+#endif

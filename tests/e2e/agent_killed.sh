@@ -1,0 +1,26 @@
+#!/bin/bash
+# An agent killed in mid-trial: the trial is aborted and does not count, a new agent goes on with
+# the experiences of the last trial saved.
+. "$(dirname "$0")/common.sh"
+URL='udpm://239.255.76.67:7725?ttl=0'
+start agent "$AGENT" --lcm-url "$URL" --store kept.store
+agent=$LAST
+start sim timeout 100 "$SIM" --lcm-url "$URL" --object RPRPRPR --trials 30 --results r.csv
+sim=$LAST
+for _ in $(seq 200); do
+    [ "$(wc -l <r.csv 2>/dev/null || echo 0)" -ge 4 ] && break
+    sleep 0.02
+done
+sleep 0.05 # into the next trial
+kill -9 "$agent"
+wait "$agent" 2>/dev/null
+cp kept.store before.store || fail "nothing was saved before"
+kill -0 "$sim" 2>/dev/null || fail "the simulator ended with the agent"
+start agent2 timeout 60 "$AGENT" --lcm-url "$URL" --store kept.store
+agent=$LAST
+finish "$sim" grrl-sim
+finish "$agent" "the second agent"
+[ "$(grep -c -E 'discovered|capped' r.csv)" = 30 ] || fail "not 30 trials that count"
+grep -q aborted r.csv || fail "no trial was aborted"
+cmp -s before.store kept.store && fail "the second agent saved nothing"
+exit 0

@@ -1,0 +1,75 @@
+/* memq_run OBJECT TRIALS SEED STORE: agent and simulator in one process over memq://, with the
+ * defaults of grrl-agent and grrl-sim. What these two write over a network must be the same. */
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "node.hpp"
+
+/* A struct and a function of the library share the name grrl_canonical: fine in C. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+extern "C" {
+#include "agent.h"
+#include "store_file.h"
+}
+#pragma GCC diagnostic pop
+
+using namespace grrl_sim;
+
+static int64_t now_us()
+{
+    using namespace std::chrono;
+    return duration_cast<microseconds>(steady_clock::now().time_since_epoch()).count();
+}
+
+static int64_t agent_clock(void *)
+{
+    return now_us();
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 5)
+        return 2;
+    Result<ObjectSpec> object = object_from_text(argv[1]);
+    lcm_t *lcm = lcm_create("memq://");
+    if (!object || lcm == nullptr)
+        return 1;
+    std::vector<grrl_experience_state> states(1000);
+    std::vector<grrl_experience> experiences(1000);
+    auto agent = std::make_unique<grrl_agent>();
+    grrl_agent_config agent_config{};
+    grrl_learner_config_default(&agent_config.learner);
+    agent_config.learner.seed = std::strtoull(argv[3], nullptr, 10);
+    agent_config.session_id = 1;
+    agent_config.now_us = agent_clock;
+    agent_config.states = states.data();
+    agent_config.states_capacity = 1000;
+    agent_config.experiences = experiences.data();
+    agent_config.experiences_capacity = 1000;
+    if (grrl_agent_init(agent.get(), &agent_config, lcm) != GRRL_OK)
+        return 1;
+    NodeConfig config;
+    config.object = *object.value;
+    config.trials = std::atoi(argv[2]);
+    config.seed = std::strtoull(argv[3], nullptr, 10);
+    config.now_us = now_us;
+    int64_t start = now_us();
+    {
+        Node node(lcm, std::move(config));
+        while (!node.finished() && lcm_handle_timeout(lcm, 5) >= 0) {
+            node.tick();
+            grrl_agent_tick(agent.get());
+        }
+        (void)std::printf("%lld frames in %.2f s\n", static_cast<long long>(node.frames()),
+                          static_cast<double>(now_us() - start) * 1e-6);
+    }
+    grrl_agent_close(agent.get());
+    grrl_store_error error;
+    bool saved = grrl_store_file_save(argv[4], &agent->learner.store, &error);
+    lcm_destroy(lcm);
+    return saved ? 0 : 1;
+}
