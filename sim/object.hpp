@@ -73,7 +73,7 @@ constexpr double revolute_initial_rad = radians(20.0);
 constexpr double revolute_friction_n_m = 0.03;
 constexpr double prismatic_limit_m = 0.03;
 constexpr double prismatic_initial_m = 0.015;
-constexpr double prismatic_friction_n = 0.65;
+constexpr double prismatic_friction_n = 0.8;
 constexpr double loop_friction_share = 1.0 / 3.0;
 
 /* A link without a name, of a size, with the features that suit its length. */

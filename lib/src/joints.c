@@ -313,6 +313,7 @@ static bool is_near(const struct grrl_perception *p, const struct evidence *e)
         return distance_to_body(p, e->a, e->fit.in_a) < gap &&
                distance_to_body(p, e->b, e->fit.in_b) < gap;
     }
+    gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both = p->pose[k][e->a].mass > 0.0f && p->pose[k][e->b].mass > 0.0f;
         if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap) {
