@@ -32,6 +32,8 @@ struct motion {
     struct relative at[GRRL_MAX_KEYFRAMES];
     bool at_rest[GRRL_MAX_KEYFRAMES];
     float noise2;
+    float bend_a; /* variances of the bodies' residuals beyond noise, per axis */
+    float bend_b;
     float c0; /* mean rotation */
     float s0;
 };
@@ -40,6 +42,8 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
 {
     motion->n = 0;
     motion->noise2 = p->config.noise_m * p->config.noise_m;
+    motion->bend_a = p->bend_m2[a];
+    motion->bend_b = p->bend_m2[b];
     float c = 0.0f;
     float s = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -72,7 +76,7 @@ static float point_variance(const struct grrl_perception *p, const struct motion
     return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
                              0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
                                      lever_b2 / (r->pb->inertia + 1e-9f))) +
-           2.0f * model * model;
+           2.0f * model * model + motion->bend_a + motion->bend_b;
 }
 
 static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
@@ -81,7 +85,9 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
     /* the model error of a body's n features acts on its turn like noise of one frame each */
     float model2 = p->config.model_error_m * p->config.model_error_m;
     return (motion->noise2 + 4.0f * model2) *
-           (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f));
+               (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f)) +
+           motion->bend_a * r->pa->mass / (r->pa->inertia + 1e-9f) +
+           motion->bend_b * r->pb->mass / (r->pb->inertia + 1e-9f);
 }
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)

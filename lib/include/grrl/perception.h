@@ -155,6 +155,7 @@ struct grrl_perception {
     uint16_t number[GRRL_MAX_LINKS];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
     struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+    float bend_m2[GRRL_MAX_LINKS]; /* variance of a body's residuals beyond noise, per axis */
 
     /* private: the answer */
     struct grrl_model model;
