@@ -13,7 +13,7 @@
 
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
 #define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
-#define FAR_ENOUGH 0.7f     /* of what tells a joint: what parts two bodies */
+#define FAR_ENOUGH 1.0f     /* of what tells a joint: what parts two bodies */
 #define NEVER 1e9f
 #define REASSIGN_ROUNDS 6
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */

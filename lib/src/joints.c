@@ -16,6 +16,8 @@
 #define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
+#define MISFIT_MAX 40.0f    /* chi squared beyond which a type does not explain the motion at all */
+#define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
 #define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
@@ -372,21 +374,21 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
 }
 
 /*
- * Probabilities of the three models from their chi squared. A free motion explains also what a
- * joint explains, and is then as likely as the joint but for what the motion tells beyond first
- * order.
+ * Chi squared of untied motion. A free motion explains also what a joint explains, and is then as
+ * likely as the joint but for what the motion tells beyond first order.
  */
-static void model_probabilities(const struct grrl_perception *p, const struct motion *motion,
-                                const struct grrl_joint_fit *revolute,
-                                const struct grrl_joint_fit *prismatic, float free,
-                                float *probability)
+static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
+                         const struct grrl_joint_fit *fit, bool turns, float free)
 {
-    bool turns = revolute->excess < prismatic->excess;
-    float tested =
-        turns ? curvature_evidence(p, motion, revolute) : sliding_evidence(p, motion, prismatic);
-    float untested = (turns ? revolute->excess : prismatic->excess) + tested + JOINT_PRIOR;
-    float chi2[3] = {revolute->excess, prismatic->excess, free < untested ? free : untested};
-    float least = turns ? chi2[0] : chi2[1];
+    float tested = turns ? curvature_evidence(p, motion, fit) : sliding_evidence(p, motion, fit);
+    float untested = fit->excess + tested + JOINT_PRIOR;
+    return free < untested ? free : untested;
+}
+
+/* Probabilities from chi squared, with equal priors. */
+static void model_probabilities(const float *chi2, float *probability)
+{
+    float least = chi2[0] < chi2[1] ? chi2[0] : chi2[1];
     least = chi2[2] < least ? chi2[2] : least;
     float sum = 0.0f;
     for (int i = 0; i < 3; i++) {
@@ -396,6 +398,19 @@ static void model_probabilities(const struct grrl_perception *p, const struct mo
     for (int i = 0; i < 3; i++) {
         probability[i] /= sum;
     }
+}
+
+/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
+static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+{
+    float scale = 0.4f * p->config.gap_m;
+    float da = distance_to_body(p, e->a, e->fit.in_a);
+    float db = distance_to_body(p, e->b, e->fit.in_b);
+    if (e->type == GRRL_PRISMATIC) {
+        da = gap_between(p, e->a, e->b, (uint8_t)(p->n_keyframes - 1));
+        db = 0.0f;
+    }
+    return (da * da + db * db) / (scale * scale);
 }
 
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
@@ -419,6 +434,12 @@ bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    model_probabilities(p, &motion, &revolute, &prismatic, free, e->p);
-    return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
+    float untied = untied_cost(p, &motion, &e->fit, is_revolute, free);
+    float chi2[3] = {revolute.excess, prismatic.excess, untied};
+    model_probabilities(chi2, e->p);
+    float support = untied - e->fit.excess;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e);
+    bool fits = e->fit.excess < MISFIT_MAX + 0.5f * (float)motion.n;
+    return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
+           is_near(p, e);
 }
