@@ -145,7 +145,7 @@ static void revolute_joint_with_its_pivot(void **state)
         grrl_transform(world.pose[0], (struct grrl_vec2){world.length_m / 2, 0.0f});
     float error = grrl_vec2_length(grrl_vec2_sub(model->joint[0].point_m, pivot));
     assert_true(error < 0.002f);
-    assert_true(error < 5.0f * model->joint[0].pivot_sd_m + 0.0005f);
+    assert_true(error < 5.0f * sqrtf(model->joint[0].point_cov_m2[0]) + 0.0005f);
     assert_true(model->joint[0].upper - model->joint[0].lower > 0.38f);
     assert_true(model->joint[0].upper - model->joint[0].lower < 0.42f);
     assert_true(model->joint[0].probability > 0.95f);
