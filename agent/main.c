@@ -167,11 +167,15 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
         (void)fprintf(stderr, "grrl-agent: %s\n", grrl_status_text(status));
         return false;
     }
-    if (run->options.store == NULL ||
-        grrl_store_file_load(run->options.store, &agent.learner.store, &error))
+    if (run->options.store == NULL)
         return true;
-    (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
-    return false;
+    if (!grrl_store_file_load(run->options.store, &agent.learner.store, &error)) {
+        (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
+        return false;
+    }
+    save(run); /* the same again: where it cannot be written, that shows before anything is learned
+                */
+    return !run->failed;
 }
 
 static int run_agent(struct run *run)

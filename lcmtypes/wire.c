@@ -194,8 +194,11 @@ static const struct field agent_status_fields[] = {
 static unsigned char *place(const struct field *field, void *message, uint32_t i)
 {
     unsigned char *base = (unsigned char *)message + field->offset;
-    if (field->n == 0)
-        memcpy(&base, base, sizeof base);
+    if (field->n == 0) {
+        void *array;
+        memcpy(&array, base, sizeof array);
+        base = array;
+    }
     return base + (size_t)i * kind_bytes[field->kind];
 }
 
@@ -302,8 +305,11 @@ static bool check(const struct type *type, const void *message, struct grrl_wire
         const struct field *field = &type->fields[f];
         uint32_t n = count(field, message);
         const unsigned char *base = (const unsigned char *)message + field->offset;
-        if (field->n == 0)
-            memcpy(&base, base, sizeof base);
+        if (field->n == 0) {
+            const void *array;
+            memcpy(&array, base, sizeof array);
+            base = array;
+        }
         for (uint32_t i = 0; i < n; i++) {
             double value = load((enum kind)field->kind, base + (size_t)i * kind_bytes[field->kind]);
             if (!in_range(type, field, value, why))

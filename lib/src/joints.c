@@ -6,17 +6,17 @@
  *   prismatic   no relative turn, sliding along one line: 3 parameters
  *   free        anything; explains all, but pays for each keyframe in which it was needed
  * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
- * sliding), and a joint type is called only when the motion excites it. Joints come from a maximum
- * spanning forest over the evidence; a joint that closes a loop of four links or more needs
- * more of it (a triangle of joints could not move).
+ * sliding), and a joint type is called only when the motion excites it.
  */
 #include "perception_internal.h"
 
 #define FREE_COST 14.0f      /* chi squared a free pose costs in a keyframe that needs it */
 #define FREE_COST_MAX 140.0f /* neighbouring keyframes are not independent: no more than this */
 #define TYPE_MARGIN 8.0f     /* chi squared by which one type must be better than the other */
-#define LOOP_COST 40.0f      /* and a joint that closes a loop better than free */
-#define EXCITED_SIGMAS 5.0f  /* relative motion in standard deviations */
+#define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
+#define TURN_EVIDENCE_MAX 30.0f
+#define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
+#define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
@@ -30,32 +30,10 @@ struct relative {
 struct motion {
     uint8_t n;
     struct relative at[GRRL_MAX_KEYFRAMES];
+    bool at_rest[GRRL_MAX_KEYFRAMES];
     float noise2;
     float c0; /* mean rotation */
     float s0;
-};
-
-/* How well a joint type explains a motion. */
-struct fit {
-    float excess; /* chi squared beyond its expectation */
-    bool excited; /* the motion is large enough to tell */
-    float lower;  /* excursion from the first keyframe */
-    float upper;
-    struct grrl_vec2 in_a;
-    struct grrl_vec2 in_b;
-    struct grrl_vec2 axis_in_a;
-    float point_variance; /* of the pivot per axis; of the sliding line across */
-    float axis_variance;  /* of the sliding direction, rad^2 */
-};
-
-struct evidence {
-    float weight; /* chi squared better than free */
-    float odds;   /* chi squared better than the other type */
-    float p[3];   /* probabilities: revolute, prismatic, free */
-    uint8_t a;
-    uint8_t b;
-    uint8_t type;
-    struct fit fit;
 };
 
 static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struct motion *motion)
@@ -70,6 +48,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
         if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
             continue;
         }
+        motion->at_rest[motion->n] = p->keyframe[k].at_rest;
         struct relative *r = &motion->at[motion->n++];
         r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
         r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
@@ -128,7 +107,7 @@ static float half_extent(const struct grrl_perception *p, uint8_t body)
  * |pb|^2 / sb^2. R is a rotation, so the 4 x 4 normal equations reduce to scalars.
  */
 static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
-                         float hb, struct fit *fit)
+                         float hb, struct grrl_joint_fit *fit)
 {
     float sa = p->config.pivot_scale_m + ha;
     float sb = p->config.pivot_scale_m + hb;
@@ -198,7 +177,7 @@ static struct grrl_vec2 slide_point(const struct motion *motion, const struct re
 }
 
 static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
-                          struct fit *fit)
+                          struct grrl_joint_fit *fit)
 {
     struct grrl_vec2 middle = {0.0f, 0.0f};
     for (uint8_t k = 0; k < motion->n; k++) {
@@ -310,7 +289,7 @@ static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, 
 
 /* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
  */
-static bool is_near(const struct grrl_perception *p, const struct evidence *e)
+static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
 {
     float gap = p->config.gap_m;
     if (e->type == GRRL_REVOLUTE) {
@@ -327,28 +306,99 @@ static bool is_near(const struct grrl_perception *p, const struct evidence *e)
     return true;
 }
 
-/* Probabilities of the three models with equal priors, from their chi squared. */
-static void model_probabilities(float revolute, float prismatic, float free, float *p)
+/*
+ * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
+ * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
+ * distance from the pivot, tells that it stays where it is.
+ */
+static float curvature_evidence(const struct grrl_perception *p, const struct motion *motion,
+                                const struct grrl_joint_fit *fit)
 {
-    float chi2[3] = {revolute, prismatic, free};
-    float least = revolute < prismatic ? revolute : prismatic;
-    least = free < least ? free : least;
+    float a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
+    float b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
+    float lever2 = a2 > b2 ? a2 : b2;
+    float w = 0.0f;
+    float m[5] = {0.0f}; /* moments of the turn, weighted */
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float wk = 1.0f / point_variance(p, motion, r, a2, b2);
+        float turn = turn_from_mean(motion, r);
+        float power = wk;
+        for (int i = 0; i < 5; i++) {
+            m[i] += power;
+            power *= turn;
+        }
+        w += wk;
+    }
+    /* what remains of turn^2 / 2 after regression on 1 and turn */
+    float mean = m[1] / w;
+    float var = m[2] - w * mean * mean;
+    float cov = m[3] - mean * m[2];
+    float sum = m[4] - m[2] * m[2] / w;
+    float rest = var > 0.0f ? sum - cov * cov / var : 0.0f;
+    return rest > 0.0f ? 0.25f * lever2 * rest : 0.0f;
+}
+
+/*
+ * What the motion says for sliding: two things that move in parallel look the same. They are tied
+ * if they turned together, or slid along the same line in several pushes.
+ */
+static float sliding_evidence(const struct grrl_perception *p, const struct motion *motion,
+                              const struct grrl_joint_fit *fit)
+{
+    const struct grrl_pose *first = &motion->at[0].pa->pose;
+    float turned = 0.0f;
+    float pushes = -1.0f;
+    float last = grrl_vec2_dot(motion->at[0].d, fit->axis_in_a);
+    for (uint8_t k = 1; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float turn = first->c * r->pa->pose.s - first->s * r->pa->pose.c;
+        turned += turn * turn / turn_variance(p, motion, r);
+        float at = grrl_vec2_dot(r->d, fit->axis_in_a);
+        if (motion->at_rest[k]) {
+            float slid = at > last ? at - last : last - at;
+            pushes += slid > p->config.min_slide_m ? 1.0f : 0.0f;
+            last = at;
+        }
+    }
+    turned = turned < TURN_EVIDENCE_MAX ? turned : TURN_EVIDENCE_MAX;
+    return turned + (pushes > 0.0f ? PUSH_EVIDENCE * pushes : 0.0f);
+}
+
+/*
+ * Probabilities of the three models from their chi squared. A free motion explains also what a
+ * joint explains, and is then as likely as the joint but for what the motion tells beyond first
+ * order.
+ */
+static void model_probabilities(const struct grrl_perception *p, const struct motion *motion,
+                                const struct grrl_joint_fit *revolute,
+                                const struct grrl_joint_fit *prismatic, float free,
+                                float *probability)
+{
+    bool turns = revolute->excess < prismatic->excess;
+    float tested =
+        turns ? curvature_evidence(p, motion, revolute) : sliding_evidence(p, motion, prismatic);
+    float untested = (turns ? revolute->excess : prismatic->excess) + tested + JOINT_PRIOR;
+    float chi2[3] = {revolute->excess, prismatic->excess, free < untested ? free : untested};
+    float least = turns ? chi2[0] : chi2[1];
+    least = chi2[2] < least ? chi2[2] : least;
     float sum = 0.0f;
     for (int i = 0; i < 3; i++) {
-        p[i] = grrl_exp(-0.5f * (chi2[i] - least));
-        sum += p[i];
+        probability[i] = grrl_exp(-0.5f * (chi2[i] - least));
+        sum += probability[i];
     }
     for (int i = 0; i < 3; i++) {
-        p[i] /= sum;
+        probability[i] /= sum;
     }
 }
 
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
-static bool weigh(const struct grrl_perception *p, uint8_t a, uint8_t b, struct evidence *e)
+bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                      struct grrl_joint_evidence *e)
 {
     struct motion motion;
-    struct fit revolute;
-    struct fit prismatic;
+    struct grrl_joint_fit revolute;
+    struct grrl_joint_fit prismatic;
     collect(p, a, b, &motion);
     if (motion.n < 2) {
         return false;
@@ -363,220 +413,6 @@ static bool weigh(const struct grrl_perception *p, uint8_t a, uint8_t b, struct 
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    model_probabilities(revolute.excess, prismatic.excess, free, e->p);
+    model_probabilities(p, &motion, &revolute, &prismatic, free, e->p);
     return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
-}
-
-/* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
-static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
-{
-    uint32_t reached = UINT32_C(1) << a;
-    for (unsigned links = 1; links <= GRRL_MAX_LINKS; links++) {
-        if ((reached >> b & 1u) != 0) {
-            return links;
-        }
-        uint32_t next = reached;
-        for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++) {
-            next |= (reached >> i & 1u) != 0 ? joined[i] : 0u;
-        }
-        if (next == reached) {
-            return 0;
-        }
-        reached = next;
-    }
-    return 0;
-}
-
-/* Several links on one pin are joined by one joint fewer than they are: a further joint at the
- * pivot of one already taken closes no loop. */
-static bool shares_a_pin(const struct evidence *taken, uint8_t n, const struct evidence *e,
-                         float reach)
-{
-    if (e->type != GRRL_REVOLUTE) {
-        return false;
-    }
-    for (uint8_t i = 0; i < n; i++) {
-        const struct evidence *t = &taken[i];
-        struct grrl_vec2 d;
-        if (t->type != GRRL_REVOLUTE) {
-            continue;
-        }
-        if (t->a == e->a || t->b == e->a) {
-            d = grrl_vec2_sub(t->a == e->a ? t->fit.in_a : t->fit.in_b, e->fit.in_a);
-        } else if (t->a == e->b || t->b == e->b) {
-            d = grrl_vec2_sub(t->a == e->b ? t->fit.in_a : t->fit.in_b, e->fit.in_b);
-        } else {
-            continue;
-        }
-        if (grrl_vec2_length(d) < reach) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
- * returns how many. */
-static uint8_t choose_structure(const struct grrl_perception *p, struct evidence *e, uint16_t n)
-{
-    uint32_t joined[GRRL_MAX_LINKS] = {0};
-    for (uint16_t i = 1; i < n; i++) {
-        struct evidence moving = e[i];
-        uint16_t j = i;
-        while (j > 0 && e[j - 1].weight < moving.weight) {
-            e[j] = e[j - 1];
-            j--;
-        }
-        e[j] = moving;
-    }
-    uint8_t accepted = 0;
-    for (int loops = 0; loops < 2; loops++) {
-        for (uint16_t i = accepted; i < n && accepted < GRRL_MAX_JOINTS; i++) {
-            unsigned links = links_between(joined, e[i].a, e[i].b);
-            bool take = loops == 0 ? links == 0
-                                   : links >= 4 && e[i].weight > LOOP_COST &&
-                                         !shares_a_pin(e, accepted, &e[i], 0.2f * p->config.gap_m);
-            if (take) {
-                struct evidence taken = e[i];
-                joined[taken.a] |= UINT32_C(1) << taken.b;
-                joined[taken.b] |= UINT32_C(1) << taken.a;
-                e[i] = e[accepted];
-                e[accepted++] = taken;
-            }
-        }
-    }
-    return accepted;
-}
-
-static void describe_joint(const struct grrl_perception *p, const struct evidence *e,
-                           struct grrl_joint *joint)
-{
-    const struct grrl_pose pose = p->pose[p->n_keyframes - 1][e->a].pose;
-    float v = e->fit.point_variance;
-    struct grrl_vec2 axis = grrl_rotate(pose, e->fit.axis_in_a);
-    bool slides = e->type == GRRL_PRISMATIC;
-    *joint = (struct grrl_joint){
-        .a = e->a,
-        .b = e->b,
-        .type = e->type,
-        .probability = e->p[e->type],
-        .p_revolute = e->p[0],
-        .p_prismatic = e->p[1],
-        .p_disconnected = e->p[2],
-        .point_m = grrl_transform(pose, e->fit.in_a),
-        .point_cov_m2 = {slides ? v * axis.y * axis.y : v, slides ? -v * axis.x * axis.y : 0.0f,
-                         slides ? v * axis.x * axis.x : v},
-        .axis = axis,
-        .axis_sd_rad = grrl_sqrt(e->fit.axis_variance),
-        .lower = e->fit.lower,
-        .upper = e->fit.upper,
-    };
-}
-
-static void describe_body(const struct grrl_perception *p, uint8_t body, struct grrl_body *out,
-                          const struct grrl_model *model)
-{
-    struct grrl_vec2 sum = {0.0f, 0.0f};
-    float n = 0.0f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            sum = grrl_vec2_add(sum, model->feature_m[i]);
-            n += 1.0f;
-        }
-    }
-    out->number = p->number[body];
-    out->n_features = (uint16_t)n;
-    out->centroid_m = grrl_vec2_scale(sum, n > 0.0f ? 1.0f / n : 0.0f);
-    float xx = 0.0f;
-    float xy = 0.0f;
-    float yy = 0.0f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
-            xx += d.x * d.x;
-            xy += d.x * d.y;
-            yy += d.y * d.y;
-        }
-    }
-    float major;
-    float minor;
-    grrl_principal_axes(xx, xy, yy, &major, &minor, &out->axis);
-    float along[2] = {1e9f, -1e9f};
-    float across[2] = {1e9f, -1e9f};
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
-            float x = grrl_vec2_dot(out->axis, d);
-            float y = grrl_vec2_cross(out->axis, d);
-            along[0] = x < along[0] ? x : along[0];
-            along[1] = x > along[1] ? x : along[1];
-            across[0] = y < across[0] ? y : across[0];
-            across[1] = y > across[1] ? y : across[1];
-        }
-    }
-    out->length_m = along[1] - along[0];
-    out->width_m = across[1] - across[0];
-    out->properties = out->length_m >= p->config.large_m ? (grrl_label)GRRL_PROPERTY_LARGE
-                                                         : (grrl_label)GRRL_PROPERTY_SMALL;
-}
-
-/* Joints in order of discovery: those of the last model that still hold come first. */
-static uint8_t order_of_discovery(const struct grrl_perception *p, const struct evidence *e,
-                                  uint8_t n, uint8_t *order)
-{
-    uint8_t count = 0;
-    bool placed[GRRL_MAX_JOINTS] = {false};
-    for (uint8_t j = 0; j < p->model.n_joints; j++) {
-        uint16_t a = p->model.body[p->model.joint[j].a].number;
-        uint16_t b = p->model.body[p->model.joint[j].b].number;
-        for (uint8_t i = 0; i < n; i++) {
-            uint16_t ea = p->number[e[i].a];
-            uint16_t eb = p->number[e[i].b];
-            if (!placed[i] && ((ea == a && eb == b) || (ea == b && eb == a))) {
-                placed[i] = true;
-                order[count++] = i;
-            }
-        }
-    }
-    for (uint8_t i = 0; i < n; i++) {
-        if (!placed[i]) {
-            order[count++] = i;
-        }
-    }
-    return count;
-}
-
-void grrl_joints_update(struct grrl_perception *p)
-{
-    struct evidence e[GRRL_MAX_LINKS * (GRRL_MAX_LINKS - 1) / 2];
-    uint16_t n = 0;
-    for (uint8_t a = 0; a < p->n_bodies; a++) {
-        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (weigh(p, a, b, &e[n])) {
-                n++;
-            }
-        }
-    }
-    uint8_t accepted = choose_structure(p, e, n);
-    uint8_t order[GRRL_MAX_JOINTS];
-    (void)order_of_discovery(p, e, accepted, order);
-    struct grrl_model *model = &p->model;
-    model->n_bodies = p->n_bodies;
-    model->n_joints = accepted;
-    model->n_features = p->n_slots;
-    for (uint8_t i = 0; i < accepted; i++) {
-        describe_joint(p, &e[order[i]], &model->joint[i]);
-    }
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        uint8_t body = p->body_of[i];
-        bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].mass > 0.0f;
-        model->feature_id[i] = p->id[i];
-        model->feature_body[i] = body;
-        model->feature_m[i] =
-            in_body ? grrl_transform(p->pose[p->n_keyframes - 1][body].pose, p->shape[i])
-                    : p->last[i];
-    }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
-        describe_body(p, b, &model->body[b], model);
-    }
 }

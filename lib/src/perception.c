@@ -21,8 +21,26 @@ void grrl_perception_config_default(struct grrl_perception_config *config)
         .pivot_scale_m = 0.1f,
         .gap_m = 0.1f,
         .large_m = 0.15f,
+        .slack = 1.0f,
         .min_features = 4,
+        .static_background = true,
     };
+}
+
+void grrl_perception_config_camera(struct grrl_perception_config *config, float pixel_m)
+{
+    grrl_perception_config_default(config);
+    config->noise_m = 1.0f * pixel_m;
+    config->model_error_m = 1.2f * pixel_m;
+    config->keyframe_m = 4.0f * pixel_m;
+    config->jump_m = 50.0f * pixel_m;
+    config->table_m = 1e5f * pixel_m;
+    config->min_slide_m = 5.0f * pixel_m;
+    config->pivot_scale_m = 100.0f * pixel_m;
+    config->gap_m = 200.0f * pixel_m;
+    config->large_m = 150.0f * pixel_m;
+    config->slack = 5.0f;
+    config->static_background = false;
 }
 
 static bool positive(float x)
@@ -37,7 +55,8 @@ enum grrl_status grrl_perception_init(struct grrl_perception *perception,
         !positive(config->keyframe_m) || !positive(config->jump_m) || !positive(config->table_m) ||
         !positive(config->min_turn_rad) || !positive(config->min_slide_m) ||
         !positive(config->pivot_scale_m) || !positive(config->gap_m) ||
-        !positive(config->large_m) || config->min_features < 3) {
+        !positive(config->large_m) || !(grrl_is_finite(config->slack) && config->slack >= 1.0f) ||
+        config->min_features < 3) {
         return GRRL_ERR_ARGUMENT;
     }
     memset(perception, 0, sizeof *perception);
@@ -376,7 +395,7 @@ enum grrl_status grrl_perception_update(struct grrl_perception *perception)
         return GRRL_ERR_NONE;
     }
     grrl_bodies_update(perception);
-    grrl_joints_update(perception);
+    grrl_structure_update(perception);
     return GRRL_OK;
 }
 

@@ -3,20 +3,32 @@
  *
  *   perception.c  tracks and keyframes: what was seen
  *   rigid.c       poses and residuals of a set of features taken as one rigid body
- *   bodies.c      which features belong together: segment, split, reassign, merge
- *   joints.c      what ties two bodies together, and the structure of all
+ *   first_look.c  what may be a body before anything has moved
+ *   consensus.c   the largest set of features that moved as one
+ *   bodies.c      which features belong together: split, reassign, merge
+ *   joints.c      what ties two bodies together
+ *   structure.c   the joints of all bodies, and the model
  */
 #ifndef GRRL_PERCEPTION_INTERNAL_H
 #define GRRL_PERCEPTION_INTERNAL_H
 
 #include "grrl/perception.h"
 
+/* Of one squared residual in units of its variance: an outlier weighs no more. */
+#define GRRL_COST_CAP 16.0f
+
+static inline float grrl_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    struct grrl_vec2 d = grrl_vec2_sub(a, b);
+    return grrl_vec2_dot(d, d);
+}
+
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
 float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight);
 
 /*
- * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's frame,
- * whose origin is the features' centroid.
+ * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
+ * frame, whose origin is the features' centroid.
  */
 
 /* Poses in all keyframes and the shape that fit best. poses[k] for k < n_keyframes. */
@@ -39,10 +51,56 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
 uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
 
-/* bodies.c: brings body_of, shape and pose up to date. */
+/* first_look.c: the candidate bodies in the first keyframe. */
+void grrl_first_look(struct grrl_perception *p);
+
+/*
+ * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
+ * together, in standard deviations of chi squared; score[k] is that of keyframe k.
+ */
+float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t body,
+                  float *score);
+
+/* The largest set among `slots` that moved as one in the keyframes of highest score; returns its
+ * size, members[] holds it. */
+uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                        const float *score, uint16_t *members);
+
+/* bodies.c: a new body without features, the last in the list; there must be room. */
+void grrl_body_add(struct grrl_perception *p);
+
+/* Brings body_of, shape and pose up to date. */
 void grrl_bodies_update(struct grrl_perception *p);
 
-/* joints.c: fills the model's joints from the bodies. */
-void grrl_joints_update(struct grrl_perception *p);
+/* How well a joint type explains the relative motion of two bodies. */
+struct grrl_joint_fit {
+    float excess; /* chi squared beyond its expectation */
+    bool excited; /* the motion is large enough to tell */
+    float lower;  /* excursion from the first keyframe, rad or m */
+    float upper;
+    struct grrl_vec2 in_a; /* the pivot, or a point on the axis, in the frame of a */
+    struct grrl_vec2 in_b;
+    struct grrl_vec2 axis_in_a;
+    float point_variance; /* of the pivot per axis; of the sliding line across */
+    float axis_variance;  /* of the sliding direction, rad^2 */
+};
+
+/* The evidence for a joint between bodies a < b. */
+struct grrl_joint_evidence {
+    float weight; /* chi squared better than free */
+    float odds;   /* chi squared better than the other type */
+    float p[3];   /* probabilities: revolute, prismatic, free */
+    uint8_t a;
+    uint8_t b;
+    uint8_t type;
+    struct grrl_joint_fit fit;
+};
+
+/* joints.c: weighs the evidence for a joint between a and b; false: none is supported. */
+bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                      struct grrl_joint_evidence *evidence);
+
+/* structure.c: fills the model from the bodies and what ties them together. */
+void grrl_structure_update(struct grrl_perception *p);
 
 #endif

@@ -37,6 +37,7 @@ refused 2 "$SIM" --object RR --agent-timeout 0
 refused 1 "$SIM" --object RR --lcm-url "$URL" --agent-timeout 0.3
 refused 1 "$SIM" --object RR --lcm-url "$URL" --results no/such/folder/r.csv
 refused 1 "$SIM" --object RR --lcm-url "$URL" --log no/such/folder/run.lcm
+refused 1 "$AGENT" --lcm-url "$URL" --store no/such/folder/a.store
 refused 1 "$AGENT" --lcm-url bogus
 refused 1 "$AGENT" --lcm-url 'file://missing.lcm'
 

@@ -166,6 +166,7 @@ public:
         moving_ = moving_ && world_.step_frame();
         if (was_moving != moving_)
             report(GRRL_PUSH_STATUS_T_DONE, GRRL_PUSH_STATUS_T_REACHED);
+        rest_frames_ = moving_ ? 0 : rest_frames_ + 1;
         Frame frame;
         world_.observe(frame);
         grrl_points_t &m = points_.message;
@@ -205,6 +206,8 @@ private:
         push.end_m = {static_cast<double>(c.end[0]), static_cast<double>(c.end[1])};
         push.travel_m = static_cast<double>(c.travel);
         pushes_++;
+        assert_true(rest_frames_ >= 10); /* enough to average */
+        rest_frames_ = 0;
         moving_ = world_.begin_push(push).empty();
         report(moving_ ? GRRL_PUSH_STATUS_T_MOVING : GRRL_PUSH_STATUS_T_REFUSED,
                moving_ ? GRRL_PUSH_STATUS_T_NONE : GRRL_PUSH_STATUS_T_BAD_COMMAND);
@@ -236,6 +239,7 @@ private:
     grrl_wire_why why_;
     uint8_t bytes_[GRRL_WIRE_MAX_BYTES];
     int pushes_ = 0;
+    int rest_frames_ = 0;
     bool moving_ = false;
 };
 

@@ -35,17 +35,21 @@ struct grrl_frame {
 
 /* Fill with grrl_perception_config_default, then change what differs. */
 struct grrl_perception_config {
-    float noise_m;        /* standard deviation of a point in one frame, per axis; 0.0007 */
-    float model_error_m;  /* what rigidity and joints may be off, per axis; 0.0001 */
-    float keyframe_m;     /* how far features move in a push until the next keyframe; 0.008 */
-    float jump_m;         /* a point that moved farther in one frame is an outlier; 0.015 */
-    float table_m;        /* points beyond this distance from the origin are refused; 100 */
-    float min_turn_rad;   /* relative rotation below this supports no joint type; 0.05 */
-    float min_slide_m;    /* relative sliding below this supports no joint type; 0.0025 */
-    float pivot_scale_m;  /* pivots farther than this from their bodies are unlikely; 0.1 */
-    float gap_m;          /* joined bodies stay this close, three of their features; 0.1 */
-    float large_m;        /* links at least this long have the property large; 0.15 */
-    uint8_t min_features; /* fewer features are no body; 4 */
+    float noise_m;       /* standard deviation of a point in one frame, per axis; 0.0007 */
+    float model_error_m; /* what rigidity and joints may be off, per axis; 0.0001 */
+    float keyframe_m;    /* how far features move in a push until the next keyframe; 0.008 */
+    float jump_m;        /* a point that moved farther in one frame is an outlier; 0.015 */
+    float table_m;       /* points beyond this distance from the origin are refused; 100 */
+    float min_turn_rad;  /* relative rotation below this supports no joint type; 0.05 */
+    float min_slide_m;   /* relative sliding below this supports no joint type; 0.0025 */
+    float pivot_scale_m; /* pivots farther than this from their bodies are unlikely; 0.1 */
+    float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
+    float large_m;       /* links at least this long have the property large; 0.15 */
+    float
+        slack; /* how much more than noise a split needs, >= 1; 1. Pictures are no exact plane: 4 */
+    uint8_t min_features;   /* fewer features are no body; 4 */
+    bool static_background; /* what is sparse at first sight and never moves is background; true.
+                               false: all that is seen may be a body, as from a moving camera */
 };
 
 /* What a feature belongs to, when it is no body's. */
@@ -156,7 +160,15 @@ struct grrl_perception {
     struct grrl_model model;
 };
 
+/* A tracker in metres above a table, with a background at rest. */
 void grrl_perception_config_default(struct grrl_perception_config *config);
+
+/*
+ * A camera that may move: points in pixels, given as if a pixel were pixel_m metres wide (0.001
+ * will do). Perspective and depth make the planar rigid model fail a little: a larger model error,
+ * slack, and no static background.
+ */
+void grrl_perception_config_camera(struct grrl_perception_config *config, float pixel_m);
 
 /* GRRL_ERR_ARGUMENT for a configuration that is not finite or out of range. */
 GRRL_MUST_USE enum grrl_status grrl_perception_init(struct grrl_perception *perception,
