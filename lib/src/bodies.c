@@ -13,6 +13,8 @@
 
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
 #define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
+#define FAR_ENOUGH 1.0f     /* of what tells a joint: what parts two bodies */
+#define NEVER 1e9f
 #define REASSIGN_ROUNDS 6
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
 #define MERGE_EVIDENCE 40.0f /* and how much more in all keyframes together */
@@ -147,7 +149,7 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
 static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     if (!may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
-        return 1e9f;
+        return NEVER;
     }
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t n = 0;
@@ -159,11 +161,59 @@ static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t 
     return apart_evidence(p, slots, n, p->body_of, a, b);
 }
 
+/*
+ * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
+ * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
+ * would be tied to either.
+ */
+static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    float turn[2] = {0.0f, 0.0f};
+    struct grrl_vec2 shift[2] = {{0.0f, 0.0f}, {0.0f, 0.0f}};
+    struct grrl_pose reference = {{0.0f, 0.0f}, 1.0f, 0.0f}; /* of b in a, at the first rest */
+    struct grrl_vec2 middle = {0.0f, 0.0f};
+    bool begun = false;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pa = &p->pose[k][a];
+        const struct grrl_perception_pose *pb = &p->pose[k][b];
+        if (!p->keyframe[k].at_rest || !(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
+            continue;
+        }
+        struct grrl_pose r = {grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p)),
+                              pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s,
+                              pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c};
+        if (!begun) {
+            begun = true;
+            reference = r;
+            middle = grrl_vec2_scale(r.p, 0.5f);
+        }
+        /* where b takes the point half way between them */
+        struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
+        struct grrl_vec2 d = grrl_vec2_sub(at, middle);
+        float t = r.s * reference.c - r.c * reference.s;
+        turn[0] = t < turn[0] ? t : turn[0];
+        turn[1] = t > turn[1] ? t : turn[1];
+        shift[0].x = d.x < shift[0].x ? d.x : shift[0].x;
+        shift[0].y = d.y < shift[0].y ? d.y : shift[0].y;
+        shift[1].x = d.x > shift[1].x ? d.x : shift[1].x;
+        shift[1].y = d.y > shift[1].y ? d.y : shift[1].y;
+    }
+    return turn[1] - turn[0] > FAR_ENOUGH * p->config.min_turn_rad ||
+           grrl_vec2_length(grrl_vec2_sub(shift[1], shift[0])) > FAR_ENOUGH * p->config.min_slide_m;
+}
+
+static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    float evidence = merge_evidence(p, a, b);
+    return evidence < MERGE_EVIDENCE * p->config.slack ||
+           (evidence < NEVER && !far_enough(p, a, b));
+}
+
 static void merge_bodies(struct grrl_perception *p)
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (merge_evidence(p, a, b) >= MERGE_EVIDENCE * p->config.slack) {
+            if (!may_merge(p, a, b)) {
                 continue;
             }
             for (uint16_t i = 0; i < p->n_slots; i++) {
@@ -338,6 +388,28 @@ static bool adopt_strays(struct grrl_perception *p)
     return true;
 }
 
+/*
+ * A joint within a body that moved too little to be told bends the body: what its residuals vary
+ * beyond noise, per axis.
+ */
+static float bend_of(const struct grrl_perception *p, uint8_t body)
+{
+    float sum = 0.0f;
+    float n = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        for (uint8_t k = 0; k < p->n_keyframes && p->body_of[i] == body; k++) {
+            uint8_t w = p->keyframe[k].weight[i];
+            if (w > 0 && p->pose[k][body].mass > 0.0f) {
+                float d2 = grrl_distance2(p->keyframe[k].point[i],
+                                          grrl_transform(p->pose[k][body].pose, p->shape[i]));
+                sum += 0.5f * d2 - grrl_keyframe_variance(p, w);
+                n += 1.0f;
+            }
+        }
+    }
+    return sum > 0.0f ? sum / n : 0.0f;
+}
+
 void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0) {
@@ -362,4 +434,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     reassign(p);
     dissolve_small(p);
     dissolve_redundant(p);
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        p->bend_m2[b] = bend_of(p, b);
+    }
 }

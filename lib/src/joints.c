@@ -16,6 +16,8 @@
 #define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
+#define MISFIT_MAX 40.0f    /* chi squared beyond which a type does not explain the motion at all */
+#define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
 #define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
@@ -32,6 +34,8 @@ struct motion {
     struct relative at[GRRL_MAX_KEYFRAMES];
     bool at_rest[GRRL_MAX_KEYFRAMES];
     float noise2;
+    float bend_a; /* variances of the bodies' residuals beyond noise, per axis */
+    float bend_b;
     float c0; /* mean rotation */
     float s0;
 };
@@ -40,6 +44,8 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
 {
     motion->n = 0;
     motion->noise2 = p->config.noise_m * p->config.noise_m;
+    motion->bend_a = p->bend_m2[a];
+    motion->bend_b = p->bend_m2[b];
     float c = 0.0f;
     float s = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -72,7 +78,7 @@ static float point_variance(const struct grrl_perception *p, const struct motion
     return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
                              0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
                                      lever_b2 / (r->pb->inertia + 1e-9f))) +
-           2.0f * model * model;
+           2.0f * model * model + motion->bend_a + motion->bend_b;
 }
 
 static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
@@ -81,7 +87,9 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
     /* the model error of a body's n features acts on its turn like noise of one frame each */
     float model2 = p->config.model_error_m * p->config.model_error_m;
     return (motion->noise2 + 4.0f * model2) *
-           (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f));
+               (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f)) +
+           motion->bend_a * r->pa->mass / (r->pa->inertia + 1e-9f) +
+           motion->bend_b * r->pb->mass / (r->pb->inertia + 1e-9f);
 }
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)
@@ -366,21 +374,21 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
 }
 
 /*
- * Probabilities of the three models from their chi squared. A free motion explains also what a
- * joint explains, and is then as likely as the joint but for what the motion tells beyond first
- * order.
+ * Chi squared of untied motion. A free motion explains also what a joint explains, and is then as
+ * likely as the joint but for what the motion tells beyond first order.
  */
-static void model_probabilities(const struct grrl_perception *p, const struct motion *motion,
-                                const struct grrl_joint_fit *revolute,
-                                const struct grrl_joint_fit *prismatic, float free,
-                                float *probability)
+static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
+                         const struct grrl_joint_fit *fit, bool turns, float free)
 {
-    bool turns = revolute->excess < prismatic->excess;
-    float tested =
-        turns ? curvature_evidence(p, motion, revolute) : sliding_evidence(p, motion, prismatic);
-    float untested = (turns ? revolute->excess : prismatic->excess) + tested + JOINT_PRIOR;
-    float chi2[3] = {revolute->excess, prismatic->excess, free < untested ? free : untested};
-    float least = turns ? chi2[0] : chi2[1];
+    float tested = turns ? curvature_evidence(p, motion, fit) : sliding_evidence(p, motion, fit);
+    float untested = fit->excess + tested + JOINT_PRIOR;
+    return free < untested ? free : untested;
+}
+
+/* Probabilities from chi squared, with equal priors. */
+static void model_probabilities(const float *chi2, float *probability)
+{
+    float least = chi2[0] < chi2[1] ? chi2[0] : chi2[1];
     least = chi2[2] < least ? chi2[2] : least;
     float sum = 0.0f;
     for (int i = 0; i < 3; i++) {
@@ -390,6 +398,19 @@ static void model_probabilities(const struct grrl_perception *p, const struct mo
     for (int i = 0; i < 3; i++) {
         probability[i] /= sum;
     }
+}
+
+/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
+static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+{
+    float scale = 0.4f * p->config.gap_m;
+    float da = distance_to_body(p, e->a, e->fit.in_a);
+    float db = distance_to_body(p, e->b, e->fit.in_b);
+    if (e->type == GRRL_PRISMATIC) {
+        da = gap_between(p, e->a, e->b, (uint8_t)(p->n_keyframes - 1));
+        db = 0.0f;
+    }
+    return (da * da + db * db) / (scale * scale);
 }
 
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
@@ -413,6 +434,12 @@ bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    model_probabilities(p, &motion, &revolute, &prismatic, free, e->p);
-    return e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN && is_near(p, e);
+    float untied = untied_cost(p, &motion, &e->fit, is_revolute, free);
+    float chi2[3] = {revolute.excess, prismatic.excess, untied};
+    model_probabilities(chi2, e->p);
+    float support = untied - e->fit.excess;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e);
+    bool fits = e->fit.excess < MISFIT_MAX + 0.5f * (float)motion.n;
+    return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
+           is_near(p, e);
 }

@@ -88,6 +88,7 @@ struct grrl_joint_fit {
 /* The evidence for a joint between bodies a < b. */
 struct grrl_joint_evidence {
     float weight; /* chi squared better than free */
+    float order;  /* better than what untied motion explains as well, less for distance */
     float odds;   /* chi squared better than the other type */
     float p[3];   /* probabilities: revolute, prismatic, free */
     uint8_t a;

@@ -65,7 +65,7 @@ static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joi
     for (uint16_t i = 1; i < n; i++) {
         struct grrl_joint_evidence moving = e[i];
         uint16_t j = i;
-        while (j > 0 && e[j - 1].weight < moving.weight) {
+        while (j > 0 && e[j - 1].order < moving.order) {
             e[j] = e[j - 1];
             j--;
         }

@@ -40,8 +40,8 @@ struct grrl_perception_config {
     float keyframe_m;    /* how far features move in a push until the next keyframe; 0.008 */
     float jump_m;        /* a point that moved farther in one frame is an outlier; 0.015 */
     float table_m;       /* points beyond this distance from the origin are refused; 100 */
-    float min_turn_rad;  /* relative rotation below this supports no joint type; 0.05 */
-    float min_slide_m;   /* relative sliding below this supports no joint type; 0.0025 */
+    float min_turn_rad;  /* relative rotation below this supports no joint type; 0.035 */
+    float min_slide_m;   /* relative sliding below this supports no joint type; 0.00175 */
     float pivot_scale_m; /* pivots farther than this from their bodies are unlikely; 0.1 */
     float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
     float large_m;       /* links at least this long have the property large; 0.15 */
@@ -155,6 +155,7 @@ struct grrl_perception {
     uint16_t number[GRRL_MAX_LINKS];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
     struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+    float bend_m2[GRRL_MAX_LINKS]; /* variance of a body's residuals beyond noise, per axis */
 
     /* private: the answer */
     struct grrl_model model;
