@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sparse_cut.hpp"
+
 namespace grrl_evaluate
 {
 
@@ -55,26 +57,62 @@ bool Baseline::rigid(size_t a, size_t b) const
     return most - least <= params_.distance_m && most > 0.0;
 }
 
-std::vector<std::vector<size_t>> Baseline::components() const
+std::vector<std::vector<size_t>> Baseline::components(const std::vector<size_t> &features) const
 {
     std::vector<std::vector<size_t>> components;
-    std::vector<bool> done(features_);
-    for (size_t seed = 0; seed < features_; seed++) {
+    std::vector<bool> done(features.size());
+    for (size_t seed = 0; seed < features.size(); seed++) {
         if (done[seed])
             continue;
-        std::vector<size_t> component{seed};
+        std::vector<size_t> component{features[seed]};
         done[seed] = true;
         for (size_t i = 0; i < component.size(); i++) {
-            for (size_t other = 0; other < features_; other++) {
-                if (!done[other] && rigid(component[i], other)) {
+            for (size_t other = 0; other < features.size(); other++) {
+                if (!done[other] && rigid(component[i], features[other])) {
                     done[other] = true;
-                    component.push_back(other);
+                    component.push_back(features[other]);
                 }
             }
         }
         components.push_back(std::move(component));
     }
     return components;
+}
+
+/* Components, divided where less than half of the edges there could be hold two parts together.
+ */
+std::vector<std::vector<size_t>> Baseline::clusters() const
+{
+    std::vector<size_t> all(features_);
+    for (size_t id = 0; id < features_; id++)
+        all[id] = id;
+    std::vector<std::vector<size_t>> clusters;
+    std::vector<std::vector<size_t>> open = components(all);
+    while (!open.empty()) {
+        std::vector<size_t> part = std::move(open.back());
+        open.pop_back();
+        size_t n = part.size();
+        if (static_cast<int>(n) < params_.min_features)
+            continue;
+        std::vector<std::vector<int>> edges(n, std::vector<int>(n, 0));
+        for (size_t i = 0; i < n; i++)
+            for (size_t j = 0; j < i; j++)
+                edges[i][j] = edges[j][i] = rigid(part[i], part[j]);
+        SparseCut cut = sparse_cut(edges, static_cast<size_t>(params_.min_features));
+        if (cut.density > 0.5) {
+            clusters.push_back(std::move(part));
+            continue;
+        }
+        std::vector<bool> apart(n, false);
+        for (size_t i : cut.apart)
+            apart[i] = true;
+        std::vector<size_t> sides[2];
+        for (size_t i = 0; i < n; i++)
+            sides[apart[i] ? 1 : 0].push_back(part[i]);
+        open.push_back(std::move(sides[0]));
+        open.push_back(std::move(sides[1]));
+    }
+    return clusters;
 }
 
 /* Most of its features have been elsewhere than where they were first. */
@@ -177,8 +215,8 @@ Belief Baseline::believe() const
     Belief belief;
     belief.body_of.assign(features_, no_body);
     std::vector<std::vector<size_t>> bodies;
-    for (std::vector<size_t> &component : components()) {
-        if (static_cast<int>(component.size()) < params_.min_features || !moved(component))
+    for (std::vector<size_t> &component : clusters()) {
+        if (!moved(component))
             continue;
         for (size_t id : component)
             belief.body_of[id] = belief.n_bodies;

@@ -3,9 +3,11 @@
  * articulated objects with interactive perception", ICRA 2008).
  *
  * Features whose mutual distance has not changed by more than a threshold are joined by an edge;
- * the connected components of that graph are the bodies, and the one at rest with the most features
- * is the background. Two bodies are compared in two poses: a relative rotation is a revolute joint
- * about its centre, a translation without rotation is a prismatic joint. It has no idea of noise.
+ * the connected components of that graph, divided where they hang together by few edges (features
+ * beside a joint keep their distances to both links), are the bodies; what is at rest is
+ * background. Two bodies are compared in two poses: a relative rotation is a revolute joint about
+ * its centre, a translation without rotation is a prismatic joint. It has no idea of noise, and is
+ * sure of all it says.
  *
  * Order of calls: one rest after the other, then believe at any time.
  */
@@ -45,7 +47,8 @@ private:
     using Picture = std::vector<Place>; /* by the id of a feature */
 
     bool rigid(size_t a, size_t b) const;
-    std::vector<std::vector<size_t>> components() const;
+    std::vector<std::vector<size_t>> components(const std::vector<size_t> &features) const;
+    std::vector<std::vector<size_t>> clusters() const;
     bool moved(const std::vector<size_t> &body) const;
     bool motion(const std::vector<size_t> &body, const Picture &from, const Picture &to,
                 grrl_sim::Pose &pose) const;

@@ -54,6 +54,7 @@ Figures figures(const Tally &tally, size_t trials)
             percent(tally.misplaced, tally.features),
             percent(tally.sure_and_right, tally.sure),
             percent(tally.six_exact, tally.six),
+            percent(tally.told_exact, tally.told),
             percent(tally.ended_exact, static_cast<int64_t>(trials))};
 }
 
@@ -77,21 +78,21 @@ Pushes pushes(const Group &group)
 
 void print_header(std::FILE *file)
 {
-    (void)std::fprintf(file, "%-14s %5s %-8s | %6s %6s %6s %6s %6s | %6s %6s | %14s %5s %6s\n",
+    (void)std::fprintf(file, "%-14s %5s %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s | %14s %5s %6s\n",
                        "object", "noise", "method", "wrong", "joint", "split", "missed", "feat.",
-                       "calib.", "six", "pushes", "cap", "ms");
+                       "calib.", "six", "moved", "pushes", "cap", "ms");
 }
 
 void print_group(std::FILE *file, const Group &group)
 {
     for (int m = OURS; m < METHODS; m++) {
         Figures f = figures(sum(group, static_cast<Method>(m)), group.trials.size());
-        (void)std::fprintf(file, "%-14.14s %5.3g %-8s | %6s %6s %6s %6s %6s | %6s %6s |",
+        (void)std::fprintf(file, "%-14.14s %5.3g %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s |",
                            m == OURS ? group.object.c_str() : "", group.noise, method_names[m],
                            cell(f.wrong, 2).c_str(), cell(f.wrong_joint, 2).c_str(),
                            cell(f.false_split, 2).c_str(), cell(f.missed, 1).c_str(),
                            cell(f.misplaced, 2).c_str(), cell(f.calibration, 1).c_str(),
-                           cell(f.exact_in_six, 0).c_str());
+                           cell(f.exact_in_six, 0).c_str(), cell(f.exact_when_moved, 0).c_str());
         if (m == OURS) {
             Pushes p = pushes(group);
             (void)std::fprintf(file, " %6.1f +- %4.1f %5.1f %6.2f", p.mean, p.half_width, p.at_cap,
@@ -108,8 +109,9 @@ void print_csv(std::FILE *file, const std::vector<Group> &groups)
         file, "object,noise,method,trials,pushes_mean,pushes_half_width_95,at_cap_percent,"
               "milliseconds_a_push,wrong_percent,wrong_joint_percent,false_split_percent,"
               "missed_percent,misplaced_features_percent,calibration_percent,exact_in_six_percent,"
-              "ended_exact_percent,states,wrong_joint,false_split,wrong,moved_states,missed,"
-              "features,misplaced,sure,sure_and_right,six,six_exact,ended_exact\n");
+              "exact_when_moved_percent,ended_exact_percent,states,wrong_joint,false_split,wrong,"
+              "moved_states,missed,"
+              "features,misplaced,sure,sure_and_right,six,six_exact,told,told_exact,ended_exact\n");
     for (const Group &group : groups) {
         Pushes p = pushes(group);
         for (int m = OURS; m < METHODS; m++) {
@@ -119,7 +121,7 @@ void print_csv(std::FILE *file, const std::vector<Group> &groups)
                                quoted(group.object).c_str(), group.noise, method_names[m],
                                group.trials.size(), p.mean, p.half_width, p.at_cap, p.update_ms);
             for (double figure : {f.wrong, f.wrong_joint, f.false_split, f.missed, f.misplaced,
-                                  f.calibration, f.exact_in_six, f.ended_exact})
+                                  f.calibration, f.exact_in_six, f.exact_when_moved, f.ended_exact})
                 (void)std::fprintf(file, figure < 0.0 ? "," : ",%.3f", figure);
             csv_counts(file, tally);
             (void)std::fputc('\n', file);

@@ -27,6 +27,7 @@ struct Figures {
     double misplaced;
     double calibration;
     double exact_in_six;
+    double exact_when_moved;
     double ended_exact;
 };
 

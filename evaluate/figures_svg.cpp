@@ -32,8 +32,8 @@ void write_data(std::FILE *gnuplot, const std::vector<Group> &groups)
         (void)std::fprintf(gnuplot, "%zu \"%s\" %g %g %g %g %g %g %g %g\n", i,
                            tick(groups[i].object, groups[i].noise).c_str(), shown(f[OURS].wrong),
                            shown(f[BASELINE].wrong), shown(f[OURS].misplaced),
-                           shown(f[BASELINE].misplaced), shown(f[OURS].exact_in_six),
-                           shown(f[BASELINE].exact_in_six), p.mean, p.half_width);
+                           shown(f[BASELINE].misplaced), shown(f[OURS].exact_when_moved),
+                           shown(f[BASELINE].exact_when_moved), p.mean, p.half_width);
     }
     (void)std::fprintf(gnuplot, "END\n");
 }
@@ -54,7 +54,7 @@ void write_script(std::FILE *gnuplot, const std::string &path, size_t n)
                        std::max<size_t>(900, 60 + 36 * n), quoted.c_str(), n);
     const char *const titles[] = {"states with a wrong joint or a false split, %%",
                                   "features in a wrong body, %%",
-                                  "exact within six pushes in which every joint moved, %%"};
+                                  "trials exact when every joint has moved enough, %%"};
     for (int i = 0; i < 3; i++) {
         (void)std::fprintf(gnuplot, "set title \"");
         (void)std::fprintf(gnuplot, titles[i]);

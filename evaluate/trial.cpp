@@ -191,6 +191,8 @@ Tally &Tally::operator+=(const Tally &other)
     sure_and_right += other.sure_and_right;
     six += other.six;
     six_exact += other.six_exact;
+    told += other.told;
+    told_exact += other.told_exact;
     ended_exact += other.ended_exact;
     return *this;
 }
@@ -202,7 +204,9 @@ TrialResult run_trial(const ObjectSpec &object, const TrialParams &params, uint6
     Bench bench(object, params, seed);
     TrialResult result;
     bool ended = false;
+    bool moved_so_far = false; /* every joint, enough */
     bool moved_in_six = false;
+    bool exact_when_moved[METHODS] = {false, false};
     bool exact_in_six[METHODS] = {false, false};
     int pushes = 0;
     while ((!ended || pushes < SIX) && pushes < params.cap && bench.push()) {
@@ -213,11 +217,14 @@ TrialResult run_trial(const ObjectSpec &object, const TrialParams &params, uint6
         moved_in_six = moved_in_six || (pushes <= SIX && moved);
         for (int m = OURS; m < METHODS; m++) {
             exact_in_six[m] = exact_in_six[m] || (pushes <= SIX && verdict[m].exact);
+            if (!moved_so_far)
+                exact_when_moved[m] = exact_when_moved[m] || verdict[m].exact;
             if (!ended)
                 count_state(verdict[m], moved, result.tally[m]);
             if (!ended && verdict[OURS].exact)
                 result.tally[m].ended_exact += verdict[m].exact;
         }
+        moved_so_far = moved_so_far || moved;
         result.pushes += !ended;
         ended = ended || verdict[OURS].exact;
     }
@@ -225,6 +232,8 @@ TrialResult run_trial(const ObjectSpec &object, const TrialParams &params, uint6
     result.update_ms = pushes > 0 ? 1e3 * bench.perception_s() / pushes : 0.0;
     for (int m = OURS; m < METHODS; m++) {
         result.tally[m].six = moved_in_six;
+        result.tally[m].told = moved_so_far || exact_when_moved[OURS];
+        result.tally[m].told_exact = exact_when_moved[m];
         result.tally[m].six_exact = moved_in_six && exact_in_six[m];
     }
     return result;

@@ -30,6 +30,8 @@ struct Tally {
     int64_t sure_and_right = 0;
     int64_t six = 0;       /* trials in which every joint was moved enough within six pushes .. */
     int64_t six_exact = 0; /* .. and the structure was exact in one of these states */
+    int64_t told = 0; /* trials in which every joint was moved enough, or all was known before .. */
+    int64_t told_exact = 0; /* .. and the structure was exact then or before */
     int64_t ended_exact = 0;
 
     Tally &operator+=(const Tally &other);
