@@ -113,7 +113,7 @@ static void one_blob_before_anything_moved(void **state)
         left_out += link >= 0 && model->feature_body[i] != 0;
         on_table_in_body += link < 0 && model->feature_body[i] == 0;
     }
-    assert_true(left_out <= 1); /* a lonely one */
+    assert_true(left_out <= 1);         /* a lonely one */
     assert_true(on_table_in_body <= 3); /* what lies right beside the object looks like it */
 }
 

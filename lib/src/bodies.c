@@ -228,6 +228,26 @@ static void merge_bodies(struct grrl_perception *p)
     }
 }
 
+/*
+ * Whether a feature strays from its body less than what tells a joint, in the mean. A body bent by
+ * a joint that moved less keeps its features, though their residuals are beyond noise.
+ */
+static bool stays_close(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t body = p->body_of[slot];
+    float limit2 = p->config.min_slide_m * p->config.min_slide_m;
+    float sum = 0.0f;
+    float n = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].mass > 0.0f) {
+            struct grrl_vec2 at = grrl_transform(p->pose[k][body].pose, p->shape[slot]);
+            sum += grrl_distance2(p->keyframe[k].point[slot], at);
+            n += 1.0f;
+        }
+    }
+    return sum < limit2 * n;
+}
+
 static bool reassign_once(struct grrl_perception *p)
 {
     bool changed = false;
@@ -252,6 +272,9 @@ static bool reassign_once(struct grrl_perception *p)
                 best = b;
                 best_excess = excess;
             }
+        }
+        if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, i)) {
+            best = own;
         }
         if (!p->has_moved[i] && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
             best = GRRL_FEATURE_BACKGROUND;
