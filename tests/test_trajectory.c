@@ -116,9 +116,9 @@ static void test_short_arcs(void **state)
         assert_true(fabsf(probability + result.prismatic.probability - 1.0f) < 1e-6f);
         if (i <= 3)
             assert_true(probability > 0.3f && probability < 0.7f);
-        else /* 0.4 rad: the arc rises 10 mm above its chord */
+        if (i >= 6) /* 0.6 rad: the arc rises 22 mm above its chord */
             assert_true(probability > last - 1e-3f && fabsf(result.radius_m - 0.5f) < 0.05f);
-        last = i < 3 ? 0.0f : probability;
+        last = probability;
     }
     assert_true(last > 0.99f);
 }
@@ -149,6 +149,17 @@ static void test_outliers(void **state)
         if (turns)
             assert_true(fabsf(result.radius_m - 0.4f) < 0.01f);
     }
+}
+
+/* However fast, a sample in line with its neighbours is no outlier, at the ends neither. */
+static void test_fast_and_exact(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("fast_and_exact");
+    struct grrl_trajectory_fit result = fit(line(&random, 40, 30.0, 0.0));
+    assert_int_equal(result.outliers, 0);
+    assert_int_equal(result.type, GRRL_PRISMATIC);
+    assert_true(fabsf(result.prismatic.travel - 30.0f) < 1e-3f);
 }
 
 /* A camera twice as fast, or the handle moved the other way round, changes next to nothing. */
@@ -219,10 +230,15 @@ static void test_what_is_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_circle),         cmocka_unit_test(test_line),
-        cmocka_unit_test(test_short_arcs),     cmocka_unit_test(test_more_than_a_turn),
-        cmocka_unit_test(test_outliers),       cmocka_unit_test(test_rate_and_direction),
-        cmocka_unit_test(test_two_dimensions), cmocka_unit_test(test_what_is_refused),
+        cmocka_unit_test(test_circle),
+        cmocka_unit_test(test_line),
+        cmocka_unit_test(test_short_arcs),
+        cmocka_unit_test(test_more_than_a_turn),
+        cmocka_unit_test(test_outliers),
+        cmocka_unit_test(test_fast_and_exact),
+        cmocka_unit_test(test_rate_and_direction),
+        cmocka_unit_test(test_two_dimensions),
+        cmocka_unit_test(test_what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

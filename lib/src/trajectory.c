@@ -57,14 +57,15 @@ static float coordinate(const struct grrl_trajectory *t, uint32_t i, uint8_t axi
     return axis < t->dimensions ? t->rows_m[(size_t)i * t->dimensions + axis] : 0.0f;
 }
 
-/* The median of a sample and its neighbours in time along one axis. */
+/* The median of a sample and as many of its neighbours in time before as after, at most WINDOW;
+ * along one axis. */
 static float running_median(const struct grrl_trajectory *t, uint32_t i, uint8_t axis)
 {
     float sorted[2 * WINDOW + 1];
+    uint32_t reach = i < t->n - 1 - i ? i : t->n - 1 - i;
+    reach = reach < WINDOW ? reach : WINDOW;
     unsigned n = 0;
-    uint32_t first = i < WINDOW ? 0 : i - WINDOW;
-    first = first + 2 * WINDOW < t->n ? first : t->n - 2 * WINDOW - 1;
-    for (uint32_t j = first; j <= first + 2 * WINDOW; j++) {
+    for (uint32_t j = i - reach; j <= i + reach; j++) {
         float value = coordinate(t, j, axis);
         unsigned k = n++;
         for (; k > 0 && sorted[k - 1] > value; k--) {
@@ -72,7 +73,7 @@ static float running_median(const struct grrl_trajectory *t, uint32_t i, uint8_t
         }
         sorted[k] = value;
     }
-    return sorted[WINDOW];
+    return sorted[reach];
 }
 
 /* Whether a sample stays with its neighbours. */

@@ -59,10 +59,10 @@ void grrl_trajectory_config_default(struct grrl_trajectory_config *config);
 
 /*
  * Fits both models to the projection on the two main axes. Samples that lie more than five standard
- * deviations from the median of themselves and the two before and after are left out; what remains
- * counts by the loss of a Cauchy distribution. The circle is fitted in Chernov and Lesort's
- * parameters (Journal of Mathematical Imaging and Vision, 2005), in which a line is a circle too,
- * so that arcs of a few degrees do no harm.
+ * deviations from the median of themselves and the two before and after are left out (at the ends
+ * there are fewer to tell by); what remains counts by the loss of a Cauchy distribution. The circle
+ * is fitted in Chernov and Lesort's parameters (Journal of Mathematical Imaging and Vision, 2005),
+ * in which a line is a circle too, so that arcs of a few degrees do no harm.
  * GRRL_ERR_ARGUMENT: a configuration or a number of dimensions out of range; GRRL_ERR_NUMBER: a
  * position that is not finite or beyond 1 km; GRRL_ERR_NONE: too few samples, or all in one place.
  * Cost: some 80 passes over the samples.
