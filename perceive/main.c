@@ -129,8 +129,10 @@ static struct grrl_perception_config configure(const struct grrl_perceive_option
     return config;
 }
 
-/* The recording as pushes: frames at rest are averaged, others become keyframes where something
- * has moved enough. */
+/*
+ * The recording as pushes: frames at rest are averaged, others become keyframes where something has
+ * moved enough. The last frame shows where all has come to lie.
+ */
 static enum grrl_status observe(struct grrl_tracks *tracks, struct unit unit)
 {
     for (size_t i = 0; i < tracks->n_points; i++) {
@@ -141,7 +143,8 @@ static enum grrl_status observe(struct grrl_tracks *tracks, struct unit unit)
         const struct grrl_tracks_frame *in = &tracks->frame[i];
         struct grrl_frame frame = {in->n, tracks->id + in->first, tracks->x + in->first,
                                    tracks->y + in->first};
-        grrl_perception_observe(&perception, &frame, in->pushing);
+        bool pushing = in->pushing && i + 1 < tracks->n_frames;
+        grrl_perception_observe(&perception, &frame, pushing);
     }
     return grrl_perception_update(&perception);
 }

@@ -40,7 +40,7 @@ struct grrl_tracks_error {
  * Reads rows of comma-separated values. The header names the columns frame, point, x, y (or x_px,
  * y_px) and perhaps visible in any order; others are ignored. Rows may come in any order; a point
  * that is not visible needs no position. path is for the errors only. The first frame is taken to
- * be at rest, all others as part of one long push: nobody tells when the robot acted.
+ * be at rest, all others as part of one long push: nobody tells when somebody pushed.
  */
 bool grrl_tracks_read_csv(FILE *file, const char *path, struct grrl_tracks *tracks,
                           struct grrl_tracks_error *error);
