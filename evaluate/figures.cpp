@@ -24,9 +24,9 @@ std::string cell(double value, int digits)
 
 void csv_counts(std::FILE *file, const Tally &t)
 {
-    for (int64_t count :
-         {t.states, t.wrong_joint, t.false_split, t.wrong, t.moved_states, t.missed, t.features,
-          t.misplaced, t.sure, t.sure_and_right, t.six, t.six_exact, t.ended_exact})
+    for (int64_t count : {t.states, t.wrong_joint, t.false_split, t.wrong, t.moved_states, t.missed,
+                          t.features, t.misplaced, t.sure, t.sure_and_right, t.six, t.six_exact,
+                          t.told, t.told_exact, t.ended_exact})
         (void)std::fprintf(file, ",%lld", static_cast<long long>(count));
 }
 
