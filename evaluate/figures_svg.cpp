@@ -49,8 +49,8 @@ void write_script(std::FILE *gnuplot, const std::string &path, size_t n)
                        "set multiplot layout 4,1 margins 0.08,0.98,0.13,0.96 spacing 0.0,0.045\n"
                        "set style data boxes\nset style fill solid 0.9 noborder\n"
                        "set boxwidth 0.38\nset grid ytics lc rgb '#dddddd'\nset border 3\n"
-                       "set xrange [-0.6:%zu-0.4]\nset yrange [0:*]\nset xtics nomirror ('' 0)\n"
-                       "set ytics nomirror\nset key top right\n",
+                       "set xrange [-0.6:%zu-0.4]\nset yrange [0:*]\nunset xtics\n"
+                       "set ytics nomirror\nset key at graph 1,1.13 right horizontal\n",
                        std::max<size_t>(900, 60 + 36 * n), quoted.c_str(), n);
     const char *const titles[] = {"states with a wrong joint or a false split, %%",
                                   "features in a wrong body, %%",
@@ -59,16 +59,17 @@ void write_script(std::FILE *gnuplot, const std::string &path, size_t n)
         (void)std::fprintf(gnuplot, "set title \"");
         (void)std::fprintf(gnuplot, titles[i]);
         (void)std::fprintf(gnuplot,
-                           "\" left\nplot $data using ($1-0.2):%d lc rgb '#0072b2' title 'grrl', "
+                           "\"\nplot $data using ($1-0.2):%d lc rgb '#0072b2' title 'grrl', "
                            "'' using ($1+0.2):%d lc rgb '#bbbbbb' title 'baseline'\n",
                            3 + 2 * i, 4 + 2 * i);
     }
-    (void)std::fprintf(gnuplot,
-                       "set title 'random pushes until the structure is found, with the 95%% "
-                       "interval of the mean' left\n"
-                       "set xtics rotate by -45 nomirror\nset boxwidth 0.6\nunset key\n"
-                       "plot $data using 1:9:xtic(2) lc rgb '#0072b2', '' using 1:9:10 with "
-                       "yerrorbars lc rgb '#222222' pt 0\nunset multiplot\n");
+    (void)std::fprintf(
+        gnuplot,
+        "set title 'random pushes until the structure is found, with the 95%% "
+        "interval of the mean'\n"
+        "set xtics rotate by -45 nomirror\nset boxwidth 0.6\nunset key\nset pointintervalbox 0\n"
+        "plot $data using 1:9:xtic(2) lc rgb '#0072b2', '' using 1:9:10 with "
+        "yerrorbars lc rgb '#222222' pt -1\nunset multiplot\n");
 }
 
 } // namespace

@@ -61,6 +61,7 @@ static struct page fit_page(FILE *file, const struct grrl_report *report)
     page.scale = (WIDTH - 2 * MARGIN) / wide;
     if (tall * page.scale > LONGEST)
         page.scale = LONGEST / tall;
+    page.left -= ((WIDTH - 2 * MARGIN) / page.scale - wide) / 2.0; /* in the middle */
     page.top = report->y_down ? low[1] : high[1];
     page.height = tall * page.scale + 2 * MARGIN;
     page.height = page.height > SHORTEST ? page.height : SHORTEST;
