@@ -96,7 +96,9 @@ static inline struct grrl_graph support_relabel(struct grrl_random *random,
                                                 const struct grrl_graph *graph, uint8_t *order)
 {
     struct grrl_graph relabelled;
-    support_shuffle(random, order, graph->n);
+    uint8_t n =
+        graph->n < GRRL_MAX_LINKS ? graph->n : GRRL_MAX_LINKS; /* as the compiler cannot tell */
+    support_shuffle(random, order, n);
     grrl_graph_permute(graph, order, &relabelled);
     return relabelled;
 }
