@@ -139,7 +139,17 @@ static void draw_names(const struct page *page, const struct grrl_model *model)
                       (unsigned)model->body[i].number);
 }
 
-/* The term, broken after commas; how many lines it takes. */
+/* In SVG a conjunction's & is markup. */
+static void write_escaped(FILE *file, const char *text, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (text[i] == '&')
+            (void)fputs("&amp;", file);
+        else
+            (void)fputc(text[i], file);
+}
+
+/* The term, broken at spaces; how many lines it takes. */
 static unsigned write_term(FILE *file, const char *term, double y)
 {
     unsigned lines = 0;
@@ -150,11 +160,14 @@ static unsigned write_term(FILE *file, const char *term, double y)
             while (n > LETTERS / 2 && at[n - 1] != ' ')
                 n--;
         }
-        if (file != NULL)
+        if (file != NULL) {
             (void)fprintf(file,
                           "<text x=\"%d\" y=\"%.0f\" font-family=\"monospace\" "
-                          "font-size=\"13\">%.*s</text>\n",
-                          MARGIN, y + LINE * (double)lines, (int)n, at);
+                          "font-size=\"13\">",
+                          MARGIN, y + LINE * (double)lines);
+            write_escaped(file, at, n);
+            (void)fputs("</text>\n", file);
+        }
         at += n;
     }
     return lines;
