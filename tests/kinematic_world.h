@@ -155,9 +155,9 @@ static inline void world_rest(struct kinematic_world *w, struct grrl_perception 
     }
 }
 
-/* Moves joints and root by the given amounts in 120 frames, then rests and updates. */
-static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl_perception *p,
-                                          const float *dq, struct grrl_vec2 shift, float turn)
+/* Moves joints and root by the given amounts in 120 frames, then rests. */
+static inline void world_move(struct kinematic_world *w, struct grrl_perception *p, const float *dq,
+                              struct grrl_vec2 shift, float turn)
 {
     for (int f = 0; f < 120; f++) {
         for (int i = 0; i < w->n_links; i++) {
@@ -169,6 +169,12 @@ static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl
         grrl_perception_observe(p, &frame, true);
     }
     world_rest(w, p, 10);
+}
+
+static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl_perception *p,
+                                          const float *dq, struct grrl_vec2 shift, float turn)
+{
+    world_move(w, p, dq, shift, turn);
     return grrl_perception_update(p);
 }
 
