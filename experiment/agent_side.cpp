@@ -62,6 +62,7 @@ grrl_status AgentSide::choose(void *context, grrl_learner *learner, grrl_decisio
     const grrl_model *model = grrl_perception_model(&learner->perception);
     if (model->n_bodies == 0)
         return GRRL_ERR_NONE;
+    side->chooser_->look(learner->perception);
     Action action = side->chooser_->choose(*model);
     return grrl_learner_adopt(learner, action.body_number, action.direction, decision);
 }

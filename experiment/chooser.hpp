@@ -27,6 +27,9 @@ public:
     virtual ~Chooser() = default;
     virtual void begin_trial() {}
 
+    /* Before each choice: what the model was made from, for one who foresees what comes next. */
+    virtual void look(const grrl_perception & /*perception*/) {}
+
     /* The next push; the model has at least one body. */
     virtual Action choose(const grrl_model &model) = 0;
 };

@@ -1,9 +1,9 @@
 /*
  * clairvoyant.hpp: the greedy choice of somebody who knows the truth, as a bound for all others.
  *
- * Every push of the believed model is tried in copies of the true world, under the noise that any
- * push has; the one that reveals most is taken. A joint of the object that is not believed yet
- * counts as revealed by the share of the motion that perception needs for it, at most 1.
+ * Every push of the believed model is tried in a copy of the true world, under the noise that any
+ * push has, while a copy of perception watches; the one after which most joints are rightly
+ * believed is taken, and none twice while the believed structure stays the same.
  * It reads the truth and therefore lives with the simulator.
  */
 #ifndef GRRL_EXPERIMENT_CLAIRVOYANT_HPP

@@ -172,6 +172,11 @@ void the_clairvoyant_goes_for_what_is_not_known(void **)
         join(model, i, static_cast<uint8_t>(i + 1), GRRL_REVOLUTE);
     std::unique_ptr<Chooser> chooser =
         make_clairvoyant([&world]() -> const grrl_sim::World & { return world; }, 1);
+    grrl_perception_config config;
+    grrl_perception_config_default(&config);
+    auto perception = std::make_unique<grrl_perception>();
+    assert_int_equal(grrl_perception_init(perception.get(), &config), GRRL_OK);
+    chooser->look(*perception); /* which has seen nothing: motion alone decides */
     uint64_t before = world.state_hash();
     int number = chooser->choose(model).body_number;
     assert_true(number >= 5); /* the joint between the last two is missing */
