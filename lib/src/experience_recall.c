@@ -108,9 +108,15 @@ static bool covers(const struct binding *found, const struct binding *wanted, ui
     return true;
 }
 
+static void begin(const struct job *job, struct grrl_match *match)
+{
+    const struct grrl_graph *stored = &job->stored->graph;
+    grrl_match_begin(match, job->kind, job->forth ? stored : job->current,
+                     job->forth ? job->current : stored, job->mask, job->budget);
+}
+
 /* Asks for one mapping through each wanted pair that is not yet known to have one. */
-static void find_pairs(struct job *job, const struct grrl_match *all, const struct binding *wanted,
-                       struct binding *found)
+static void find_pairs(struct job *job, const struct binding *wanted, struct binding *found)
 {
     for (uint8_t v = 0; v < job->stored->graph.n; ++v) {
         uint32_t missing = wanted->to[v];
@@ -119,9 +125,9 @@ static void find_pairs(struct job *job, const struct grrl_match *all, const stru
             if ((found->to[v] & grrl_bit(c)) != 0) {
                 continue;
             }
-            struct grrl_match match = *all;
+            struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
-            match.budget = job->budget;
+            begin(job, &match);
             grrl_match_fix(&match, job->forth ? v : c, job->forth ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK) {
                 add_mapping(job, map, found);
@@ -134,11 +140,8 @@ static void find_pairs(struct job *job, const struct grrl_match *all, const stru
 static void find_bindings(struct job *job, const struct binding *wanted, struct binding *found)
 {
     memset(found, 0, sizeof *found);
-    const struct grrl_graph *stored = &job->stored->graph;
-    struct grrl_match all;
-    grrl_match_begin(&all, job->kind, job->forth ? stored : job->current,
-                     job->forth ? job->current : stored, job->mask, job->budget);
-    struct grrl_match match = all;
+    struct grrl_match match;
+    begin(job, &match);
     for (int i = 0; i < MAPPINGS; ++i) {
         uint8_t map[GRRL_MAX_LINKS];
         enum grrl_status status = grrl_match_next(&match, map);
@@ -147,11 +150,11 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
             return;
         }
         add_mapping(job, map, found);
-        if (covers(found, wanted, stored->n)) {
+        if (covers(found, wanted, job->stored->graph.n)) {
             return;
         }
     }
-    find_pairs(job, &all, wanted, found);
+    find_pairs(job, wanted, found);
 }
 
 /* Enters what the stored state knows, under the kind, mask and closeness of the job. */
