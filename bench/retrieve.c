@@ -1,0 +1,5 @@
+#include "bench.h"
+int bench_retrieve(bool json)
+{
+    return (int)json;
+}
