@@ -52,7 +52,7 @@ extern const struct bench_peer bench_igraph;
 extern const struct bench_peer bench_nauty;
 #endif
 
-/* Nanoseconds of a clock that only goes forward. */
+/* Nanoseconds this thread has had a processor: others on the machine do not count. */
 double bench_now_ns(void);
 
 /* Nanoseconds of a sorted sample below which the share lies. */

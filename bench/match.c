@@ -3,10 +3,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "bench.h"
 
-enum { MOST_PAIRS = 256, MOST_PEERS = 6, SWEEPS = 7, N_SIZES = 4 };
+enum { MOST_PAIRS = 256, MOST_PEERS = 6, SWEEPS = 7, N_SIZES = 4, PATIENCE_S = 4 };
 
 /* A sweep over the pairs lasts at least this long, by repetition. */
 #define SWEEP_NS 2e5
@@ -155,9 +157,8 @@ static void measure_singly(const struct bench_peer *peer, const struct bench_pai
     times->worst = best[n - 1];
 }
 
-/* False: the peer cannot be asked this. */
-static bool measure(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
-                    struct times *times)
+static bool measure_here(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
+                         struct times *times)
 {
     static void *built[MOST_PAIRS][2];
     double build[SWEEPS];
@@ -192,6 +193,29 @@ static bool measure(const struct bench_peer *peer, const struct bench_pair *pair
     return able;
 }
 
+/* In a process of its own for some seconds: a peer may never end. False: it cannot be asked this,
+ * or it did not end. */
+static bool measure(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
+                    struct times *times)
+{
+    int ends[2];
+    (void)fflush(stdout);
+    if (pipe(ends) != 0)
+        abort();
+    pid_t child = fork();
+    if (child == 0) {
+        (void)alarm(PATIENCE_S);
+        if (!measure_here(peer, pairs, n, times))
+            _exit(1);
+        _exit(write(ends[1], times, sizeof *times) != (ssize_t)sizeof *times);
+    }
+    (void)close(ends[1]);
+    bool good = child > 0 && read(ends[0], times, sizeof *times) == (ssize_t)sizeof *times;
+    (void)close(ends[0]);
+    (void)waitpid(child, NULL, 0);
+    return good;
+}
+
 /* --- reports ---------------------------------------------------------------------------------- */
 
 /* Of one peer on the cases of a row, as sums of logarithms: geometric means. */
@@ -221,7 +245,12 @@ static void print_rows(const struct bench_peer **peers, unsigned n_peers, const 
     for (unsigned p = 0; p < n_peers; p++) {
         const struct row *row = &rows[p];
         if (row->n == 0)
+            continue; /* cannot be asked */
+        if (row->n < BENCH_SHAPES) {
+            (void)printf("| %2u | %s | %s | no end on %u of %d shapes |\n", (unsigned)n, what,
+                         peers[p]->name, BENCH_SHAPES - row->n, BENCH_SHAPES);
             continue;
+        }
         double mean = exp(row->mean / row->n);
         double built = exp(row->built / row->n);
         (void)printf("| %2u | %-16s | %-12s | %9.1f | %9.1f | %9.0f | %9.0f | %7.1f | %7.1f |\n",

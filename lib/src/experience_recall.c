@@ -14,7 +14,8 @@ struct job {
     const struct grrl_experience_store *store;
     const struct grrl_graph *current;
     struct grrl_recall *recall;
-    uint32_t budget; /* left for the stored state */
+    uint32_t budget; /* left for the stored state, */
+    uint32_t steps;  /* and for the sub-structures of the recall */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of it */
@@ -380,6 +381,7 @@ static void consult_parts(struct job *job, const struct grrl_recall_config *conf
     find_nearest(job->store, &current->signature, &nearest);
     job->kind = GRRL_MATCH_MONOMORPHISM;
     unsigned left = nearest.n;
+    job->steps = GRRL_RECALL_STEPS;
     for (unsigned distance = 1; left > 0 && !is_complete(job->recall); ++distance) {
         for (unsigned k = 0; k < nearest.n; ++k) {
             if (nearest.distance[k] != distance) {
@@ -387,8 +389,11 @@ static void consult_parts(struct job *job, const struct grrl_recall_config *conf
             }
             --left;
             take_state(job, nearest.state[k], config);
+            job->budget = job->budget < job->steps ? job->budget : job->steps;
+            const uint32_t granted = job->budget;
             job->forth = fits_within(job->stored->signature.word[0], current->signature.word[0]);
             consult_substructure(job, current, places, (uint8_t)distance);
+            job->steps -= granted - job->budget;
         }
     }
 }

@@ -107,6 +107,12 @@ struct grrl_recall {
 #define GRRL_RECALL_STATES 512
 #endif
 
+/* Search steps that one recall may spend on sub-structures, over all states: a bound of some
+ * milliseconds on a PC. What is left out is the farthest. */
+#ifndef GRRL_RECALL_STEPS
+#define GRRL_RECALL_STEPS 500000
+#endif
+
 /* How far retrieval may reach. */
 struct grrl_recall_config {
     enum grrl_recall_level deepest; /* GRRL_RECALL_SUBSTRUCTURE: everything */
