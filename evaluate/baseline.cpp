@@ -45,7 +45,7 @@ void Baseline::rest(const std::vector<Frame> &frames)
 /* Whether two features kept their distance, in all pictures that show both. */
 bool Baseline::rigid(size_t a, size_t b) const
 {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     double most = 0.0;
     for (const Picture &picture : pictures_) {
         if (!picture[a].seen || !picture[b].seen)
@@ -166,7 +166,7 @@ bool Baseline::motion(const std::vector<size_t> &body, const Picture &from, cons
 
 double Baseline::distance_to(const std::vector<size_t> &body, Vec2 point) const
 {
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (size_t id : body)
         if (pictures_.front()[id].seen)
             least = std::min(least, length(pictures_.front()[id].at_m - point));
@@ -181,7 +181,7 @@ bool Baseline::relate(const std::vector<size_t> &a, const std::vector<size_t> &b
     Pose greatest;
     double slide = 0.0;
     Vec2 place = pictures_.front()[b.front()].at_m;
-    double gap = INFINITY;
+    double gap = HUGE_VAL;
     for (size_t id : b)
         if (pictures_.front()[id].seen)
             gap = std::min(gap, distance_to(a, pictures_.front()[id].at_m));

@@ -52,16 +52,14 @@ void write_script(std::FILE *gnuplot, const std::string &path, size_t n)
                        "set xrange [-0.6:%zu-0.4]\nset yrange [0:*]\nunset xtics\n"
                        "set ytics nomirror\nset key at graph 1,1.13 right horizontal\n",
                        std::max<size_t>(900, 60 + 36 * n), quoted.c_str(), n);
-    const char *const titles[] = {"states with a wrong joint or a false split, %%",
-                                  "features in a wrong body, %%",
-                                  "trials exact when every joint has moved enough, %%"};
+    const char *const titles[] = {"states with a wrong joint or a false split, %",
+                                  "features in a wrong body, %",
+                                  "trials exact when every joint has moved enough, %"};
     for (int i = 0; i < 3; i++) {
-        (void)std::fprintf(gnuplot, "set title \"");
-        (void)std::fprintf(gnuplot, titles[i]);
         (void)std::fprintf(gnuplot,
-                           "\"\nplot $data using ($1-0.2):%d lc rgb '#0072b2' title 'grrl', "
-                           "'' using ($1+0.2):%d lc rgb '#bbbbbb' title 'baseline'\n",
-                           3 + 2 * i, 4 + 2 * i);
+                           "set title '%s'\nplot $data using ($1-0.2):%d lc rgb '#0072b2' title "
+                           "'grrl', '' using ($1+0.2):%d lc rgb '#bbbbbb' title 'baseline'\n",
+                           titles[i], 3 + 2 * i, 4 + 2 * i);
     }
     (void)std::fprintf(
         gnuplot,

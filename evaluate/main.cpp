@@ -9,6 +9,7 @@
 #include <cstring>
 #include <mutex>
 #include <thread>
+#include <unistd.h>
 
 #include "figures.hpp"
 #include "objects.hpp"
@@ -21,7 +22,7 @@ namespace
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
 
-/* How far a run is, on standard error, in one line. */
+/* How far a run is, on standard error. */
 class Progress
 {
 public:
@@ -32,12 +33,13 @@ public:
         std::lock_guard<std::mutex> lock(mutex_);
         done_++;
         double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-        if (quiet_ || (seconds - shown_ < 1.0 && done_ != trials_))
+        if (quiet_ || (seconds - shown_ < (terminal_ ? 1.0 : 20.0) && done_ != trials_))
             return;
         shown_ = seconds;
         double left = seconds / static_cast<double>(done_) * static_cast<double>(trials_ - done_);
-        (void)std::fprintf(stderr, "\r%zu of %zu trials, %.0f s, about %.0f s left   %s", done_,
-                           trials_, seconds, left, done_ == trials_ ? "\n" : "");
+        (void)std::fprintf(stderr, "%s%zu of %zu trials, %.0f s, about %.0f s left   %s",
+                           terminal_ ? "\r" : "", done_, trials_, seconds, left,
+                           terminal_ && done_ != trials_ ? "" : "\n");
         (void)std::fflush(stderr);
     }
 
@@ -45,6 +47,7 @@ private:
     using Clock = std::chrono::steady_clock;
     size_t trials_;
     bool quiet_;
+    bool terminal_ = isatty(STDERR_FILENO) != 0; /* one line that changes, not many */
     std::mutex mutex_;
     size_t done_ = 0;
     double shown_ = 0.0;

@@ -47,6 +47,7 @@ static const struct size sizes[] = {
     SIZE(grrl_joint),
     SIZE(grrl_model),
     SIZE(grrl_perception_counts),
+    SIZE(grrl_perception_sum),
     SIZE(grrl_perception_window),
     SIZE(grrl_perception_keyframe),
     SIZE(grrl_perception_pose),
