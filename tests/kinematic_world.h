@@ -28,7 +28,8 @@ struct kinematic_world {
     int body[WORLD_POINTS]; /* -1: background */
     struct grrl_vec2 local[WORLD_POINTS];
     int32_t id[WORLD_POINTS];
-    float missing; /* share of points not seen in a frame */
+    float missing;  /* share of points not seen in a frame */
+    float outliers; /* share of points up to 5 cm away */
     float x[WORLD_POINTS];
     float y[WORLD_POINTS];
     int32_t seen[WORLD_POINTS];
@@ -142,6 +143,10 @@ static inline struct grrl_frame world_frame(struct kinematic_world *w)
         w->seen[n] = w->id[i];
         w->x[n] = at.x + w->noise_m * world_normal(w);
         w->y[n] = at.y + w->noise_m * world_normal(w);
+        if (w->outliers > 0.0f && grrl_random_uniform(&w->random) < w->outliers) {
+            w->x[n] += world_uniform(w, -0.05f, 0.05f);
+            w->y[n] += world_uniform(w, -0.05f, 0.05f);
+        }
         n++;
     }
     return (struct grrl_frame){n, w->seen, w->x, w->y};
@@ -155,9 +160,9 @@ static inline void world_rest(struct kinematic_world *w, struct grrl_perception 
     }
 }
 
-/* Moves joints and root by the given amounts in 120 frames, then rests and updates. */
-static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl_perception *p,
-                                          const float *dq, struct grrl_vec2 shift, float turn)
+/* Moves joints and root by the given amounts in 120 frames, then rests. */
+static inline void world_move(struct kinematic_world *w, struct grrl_perception *p, const float *dq,
+                              struct grrl_vec2 shift, float turn)
 {
     for (int f = 0; f < 120; f++) {
         for (int i = 0; i < w->n_links; i++) {
@@ -169,6 +174,12 @@ static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl
         grrl_perception_observe(p, &frame, true);
     }
     world_rest(w, p, 10);
+}
+
+static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl_perception *p,
+                                          const float *dq, struct grrl_vec2 shift, float turn)
+{
+    world_move(w, p, dq, shift, turn);
     return grrl_perception_update(p);
 }
 

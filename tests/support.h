@@ -54,13 +54,11 @@ static inline void support_assert_prints(const struct grrl_term_store *store, gr
 
 static inline void support_shuffle(struct grrl_random *random, uint8_t *order, uint8_t n)
 {
-    for (uint8_t i = 0; i < n; i++)
-        order[i] = i;
-    for (uint8_t i = n; i > 1; i--) {
-        uint8_t j = (uint8_t)grrl_random_below(random, i);
-        uint8_t kept = order[i - 1];
-        order[i - 1] = order[j];
-        order[j] = kept;
+    for (uint8_t i = 0; i < n; i++) { /* i goes to a random place, who stood there to the end */
+        uint8_t j = (uint8_t)grrl_random_below(random, i + 1u);
+        if (j != i)
+            order[i] = order[j];
+        order[j] = i;
     }
 }
 

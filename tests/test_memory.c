@@ -44,10 +44,15 @@ static const struct size sizes[] = {
     SIZE(grrl_joint),
     SIZE(grrl_model),
     SIZE(grrl_perception_counts),
+    SIZE(grrl_perception_sum),
     SIZE(grrl_perception_window),
     SIZE(grrl_perception_keyframe),
     SIZE(grrl_perception_pose),
     SIZE(grrl_perception),
+    SIZE(grrl_trajectory_config),
+    SIZE(grrl_trajectory),
+    SIZE(grrl_trajectory_model),
+    SIZE(grrl_trajectory_fit),
     SIZE(grrl_grounding_config),
     SIZE(grrl_link_frame),
     SIZE(grrl_push),
@@ -124,7 +129,7 @@ static void every_public_struct_is_listed(void **state)
     (void)state;
     const char *const headers[] = {"geometry",   "term",   "graph",      "match",
                                    "canonical",  "random", "perception", "grounding",
-                                   "experience", "policy", "learner"};
+                                   "experience", "policy", "learner",    "trajectory"};
     for (size_t h = 0; h < sizeof headers / sizeof headers[0]; ++h) {
         char path[LINE_BYTES * 2];
         (void)snprintf(path, sizeof path, "%s/lib/include/grrl/%s.h", GRRL_SOURCE_DIR, headers[h]);

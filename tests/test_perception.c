@@ -113,7 +113,7 @@ static void one_blob_before_anything_moved(void **state)
         left_out += link >= 0 && model->feature_body[i] != 0;
         on_table_in_body += link < 0 && model->feature_body[i] == 0;
     }
-    assert_true(left_out <= 1); /* a lonely one */
+    assert_true(left_out <= 1);         /* a lonely one */
     assert_true(on_table_in_body <= 3); /* what lies right beside the object looks like it */
 }
 
@@ -196,6 +196,31 @@ static void evidence_accumulates_over_pushes(void **state)
     move_one(2, -0.009f);
     move_one(4, -0.009f);
     assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
+/* A change that lasts is found wherever in the memory it lies, also when all is looked at at once.
+ */
+static void a_motion_in_the_middle_is_not_missed(void **state)
+{
+    (void)state;
+    const struct grrl_vec2 shift = {0.012f, -0.008f};
+    for (uint64_t seed = 30; seed < 40; seed++) {
+        start(seed, "PP");
+        for (int i = 0; i < 12; i++) {
+            float dq[WORLD_LINKS] = {0.0f};
+            dq[2] = i == 7 ? 0.014f : 0.0f;
+            world_move(&world, &perception, dq, shift, 0.03f);
+        }
+        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+        const struct grrl_model *model = grrl_perception_model(&perception);
+        int of_none = 0;
+        for (int i = 0; i < model->n_features; i++) {
+            of_none +=
+                true_link(model->feature_id[i]) >= 0 && model->feature_body[i] >= model->n_bodies;
+        }
+        assert_int_equal(model->n_bodies, 2);
+        assert_true(of_none <= 1);
+    }
 }
 
 static void branches_and_numbers_stay(void **state)
@@ -310,6 +335,23 @@ static void missing_features_are_no_harm(void **state)
     assert_true(is_the_chain(grrl_perception_model(&perception)));
 }
 
+static void outliers_do_not_draw_the_means(void **state)
+{
+    (void)state;
+    int complete = 0;
+    for (uint64_t seed = 50; seed < 60; seed++) {
+        start(seed, "RRR");
+        world.missing = 0.2f;
+        world.outliers = 0.02f;
+        for (int i = 0; i < 6; i++) {
+            move_one(1 + i % 3, i < 3 ? 0.35f : -0.3f);
+        }
+        complete += is_the_chain(grrl_perception_model(&perception));
+    }
+    print_message("seeds 50 to 59: %d of 10 chains complete\n", complete);
+    assert_true(complete >= 9);
+}
+
 static void bad_points_are_refused_and_counted(void **state)
 {
     (void)state;
@@ -405,10 +447,12 @@ int main(void)
         cmocka_unit_test(little_motion_supports_no_type),
         cmocka_unit_test(moving_as_one_is_one),
         cmocka_unit_test(evidence_accumulates_over_pushes),
+        cmocka_unit_test(a_motion_in_the_middle_is_not_missed),
         cmocka_unit_test(branches_and_numbers_stay),
         cmocka_unit_test(random_chains_are_found),
         cmocka_unit_test(order_and_ids_of_points_do_not_matter),
         cmocka_unit_test(missing_features_are_no_harm),
+        cmocka_unit_test(outliers_do_not_draw_the_means),
         cmocka_unit_test(bad_points_are_refused_and_counted),
         cmocka_unit_test(a_jump_is_an_outlier_a_long_one_a_new_feature),
         cmocka_unit_test(more_features_than_fit_are_counted),

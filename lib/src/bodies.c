@@ -13,7 +13,7 @@
 
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
 #define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
-#define FAR_ENOUGH 1.0f     /* of what tells a joint: what parts two bodies */
+#define FAR_SIGMAS 5.0f     /* a range, of some ten rests, that noise does not reach */
 #define NEVER 1e9f
 #define REASSIGN_ROUNDS 6
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
@@ -173,6 +173,9 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
     struct grrl_pose reference = {{0.0f, 0.0f}, 1.0f, 0.0f}; /* of b in a, at the first rest */
     struct grrl_vec2 middle = {0.0f, 0.0f};
     bool begun = false;
+    float turn_var = 0.0f; /* the largest: noise alone must not look far enough */
+    float shift_var = 0.0f;
+    float noise2 = p->config.noise_m * p->config.noise_m;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
@@ -187,6 +190,11 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
             reference = r;
             middle = grrl_vec2_scale(r.p, 0.5f);
         }
+        float tv = noise2 * (1.0f / (pa->inertia + 1e-9f) + 1.0f / (pb->inertia + 1e-9f));
+        float sv =
+            noise2 * (1.0f / pa->mass + 1.0f / pb->mass) + 0.25f * tv * grrl_vec2_dot(r.p, r.p);
+        turn_var = tv > turn_var ? tv : turn_var;
+        shift_var = sv > shift_var ? sv : shift_var;
         /* where b takes the point half way between them */
         struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
         struct grrl_vec2 d = grrl_vec2_sub(at, middle);
@@ -198,8 +206,14 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
         shift[1].x = d.x > shift[1].x ? d.x : shift[1].x;
         shift[1].y = d.y > shift[1].y ? d.y : shift[1].y;
     }
-    return turn[1] - turn[0] > FAR_ENOUGH * p->config.min_turn_rad ||
-           grrl_vec2_length(grrl_vec2_sub(shift[1], shift[0])) > FAR_ENOUGH * p->config.min_slide_m;
+    float turned = turn[1] - turn[0];
+    struct grrl_vec2 range = grrl_vec2_sub(shift[1], shift[0]);
+    float shifted2 = grrl_vec2_dot(range, range);
+    float least_turn = p->config.min_turn_rad;
+    float least_shift = p->config.min_slide_m;
+    float sigmas2 = FAR_SIGMAS * FAR_SIGMAS;
+    return (turned > least_turn && turned * turned > sigmas2 * turn_var) ||
+           (shifted2 > least_shift * least_shift && shifted2 > sigmas2 * shift_var);
 }
 
 static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
@@ -228,6 +242,26 @@ static void merge_bodies(struct grrl_perception *p)
     }
 }
 
+/*
+ * Whether a feature strays from its body less than what tells a joint, in the mean. A body bent by
+ * a joint that moved less keeps its features, though their residuals are beyond noise.
+ */
+static bool stays_close(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t body = p->body_of[slot];
+    float limit2 = p->config.min_slide_m * p->config.min_slide_m;
+    float sum = 0.0f;
+    float n = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].mass > 0.0f) {
+            struct grrl_vec2 at = grrl_transform(p->pose[k][body].pose, p->shape[slot]);
+            sum += grrl_distance2(p->keyframe[k].point[slot], at);
+            n += 1.0f;
+        }
+    }
+    return sum < limit2 * n;
+}
+
 static bool reassign_once(struct grrl_perception *p)
 {
     bool changed = false;
@@ -252,6 +286,9 @@ static bool reassign_once(struct grrl_perception *p)
                 best = b;
                 best_excess = excess;
             }
+        }
+        if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, i)) {
+            best = own;
         }
         if (!p->has_moved[i] && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
             best = GRRL_FEATURE_BACKGROUND;

@@ -12,7 +12,8 @@
 
 #define SEED_NEIGHBOURS 3 /* with the seed: the smallest group whose pose is worth something */
 #define SEEDS_MAX 48
-#define SPLIT_KEYFRAMES 10 /* that tell most, used to score hypotheses */
+#define SPLIT_KEYFRAMES 12 /* that tell most, used to score hypotheses */
+#define MISFIT_CAP 400.0f  /* of one squared residual: high, to rank keyframes by it */
 #define INLIER_COST 3.5f   /* mean squared residual of a member; 2 is expected */
 
 /* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
@@ -32,7 +33,7 @@ float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16
                 float d2 = grrl_distance2(p->keyframe[k].point[slots[i]],
                                           grrl_transform(pose->pose, p->shape[slots[i]])) /
                            grrl_keyframe_variance(p, w);
-                sum += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
+                sum += d2 < MISFIT_CAP ? d2 : MISFIT_CAP;
                 count += 1.0f;
             }
         }
@@ -51,18 +52,25 @@ struct choice_of_keyframes {
     uint8_t k[SPLIT_KEYFRAMES];
 };
 
+/* Half of them spread over all keyframes, the last included, so that no lasting change is missed;
+ * half those in which the features fit worst as one body. */
 static struct choice_of_keyframes telling_keyframes(const struct grrl_perception *p,
                                                     const float *score)
 {
     struct choice_of_keyframes chosen = {0};
     bool taken[GRRL_MAX_KEYFRAMES] = {false};
+    for (uint8_t i = 0; i < SPLIT_KEYFRAMES / 2; i++) {
+        uint8_t k = (uint8_t)((p->n_keyframes - 1) * (i + 1) / (SPLIT_KEYFRAMES / 2));
+        if (!taken[k]) {
+            taken[k] = true;
+            chosen.k[chosen.n++] = k;
+        }
+    }
     while (chosen.n < SPLIT_KEYFRAMES && chosen.n < p->n_keyframes) {
-        uint8_t best = 0;
-        float best_score = -1e9f;
+        uint8_t best = GRRL_MAX_KEYFRAMES;
         for (uint8_t k = 0; k < p->n_keyframes; k++) {
-            if (!taken[k] && score[k] > best_score) {
+            if (!taken[k] && (best == GRRL_MAX_KEYFRAMES || score[k] > score[best])) {
                 best = k;
-                best_score = score[k];
             }
         }
         taken[best] = true;

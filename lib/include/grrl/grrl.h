@@ -14,6 +14,7 @@
 #include "grrl/geometry.h"
 #include "grrl/grounding.h"
 #include "grrl/perception.h"
+#include "grrl/trajectory.h"
 /* learning */
 #include "grrl/experience.h"
 #include "grrl/learner.h"

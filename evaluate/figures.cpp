@@ -1,0 +1,132 @@
+#include "figures.hpp"
+
+#include <cmath>
+
+namespace grrl_evaluate
+{
+
+namespace
+{
+
+const char *const method_names[] = {"ours", "baseline"};
+
+double percent(int64_t part, int64_t whole)
+{
+    return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : -1.0;
+}
+
+std::string cell(double value, int digits)
+{
+    char text[32];
+    (void)std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return value < 0.0 ? "-" : text;
+}
+
+void csv_counts(std::FILE *file, const Tally &t)
+{
+    for (int64_t count : {t.states, t.wrong_joint, t.false_split, t.wrong, t.moved_states, t.missed,
+                          t.features, t.misplaced, t.sure, t.sure_and_right, t.six, t.six_exact,
+                          t.told, t.told_exact, t.ended_exact})
+        (void)std::fprintf(file, ",%lld", static_cast<long long>(count));
+}
+
+std::string quoted(const std::string &text)
+{
+    return text.find(',') == std::string::npos ? text : "\"" + text + "\"";
+}
+
+} // namespace
+
+Tally sum(const Group &group, Method method)
+{
+    Tally total;
+    for (const TrialResult &trial : group.trials)
+        total += trial.tally[method];
+    return total;
+}
+
+Figures figures(const Tally &tally, size_t trials)
+{
+    return {percent(tally.wrong_joint, tally.states),
+            percent(tally.false_split, tally.states),
+            percent(tally.wrong, tally.states),
+            percent(tally.missed, tally.moved_states),
+            percent(tally.misplaced, tally.features),
+            percent(tally.sure_and_right, tally.sure),
+            percent(tally.six_exact, tally.six),
+            percent(tally.told_exact, tally.told),
+            percent(tally.ended_exact, static_cast<int64_t>(trials))};
+}
+
+Pushes pushes(const Group &group)
+{
+    double n = static_cast<double>(group.trials.size());
+    double mean = 0.0;
+    double squares = 0.0;
+    int64_t at_cap = 0;
+    double ms = 0.0;
+    for (const TrialResult &trial : group.trials) {
+        mean += trial.pushes / n;
+        at_cap += trial.at_cap;
+        ms += trial.update_ms / n;
+    }
+    for (const TrialResult &trial : group.trials)
+        squares += (trial.pushes - mean) * (trial.pushes - mean);
+    double half = n > 1.0 ? 1.96 * std::sqrt(squares / (n - 1.0) / n) : 0.0;
+    return {mean, half, percent(at_cap, static_cast<int64_t>(group.trials.size())), ms};
+}
+
+void print_header(std::FILE *file)
+{
+    (void)std::fprintf(file, "%-14s %5s %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s | %14s %5s %6s\n",
+                       "object", "noise", "method", "wrong", "joint", "split", "missed", "feat.",
+                       "calib.", "six", "moved", "pushes", "cap", "ms");
+}
+
+void print_group(std::FILE *file, const Group &group)
+{
+    for (int m = OURS; m < METHODS; m++) {
+        Figures f = figures(sum(group, static_cast<Method>(m)), group.trials.size());
+        (void)std::fprintf(file, "%-14.14s %5.3g %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s |",
+                           m == OURS ? group.object.c_str() : "", group.noise, method_names[m],
+                           cell(f.wrong, 2).c_str(), cell(f.wrong_joint, 2).c_str(),
+                           cell(f.false_split, 2).c_str(), cell(f.missed, 1).c_str(),
+                           cell(f.misplaced, 2).c_str(), cell(f.calibration, 1).c_str(),
+                           cell(f.exact_in_six, 0).c_str(), cell(f.exact_when_moved, 0).c_str());
+        if (m == OURS) {
+            Pushes p = pushes(group);
+            (void)std::fprintf(file, " %6.1f +- %4.1f %5.1f %6.2f", p.mean, p.half_width, p.at_cap,
+                               p.update_ms);
+        }
+        (void)std::fputc('\n', file);
+    }
+    (void)std::fflush(file);
+}
+
+void print_csv(std::FILE *file, const std::vector<Group> &groups)
+{
+    (void)std::fprintf(
+        file, "object,noise,method,trials,pushes_mean,pushes_half_width_95,at_cap_percent,"
+              "milliseconds_a_push,wrong_percent,wrong_joint_percent,false_split_percent,"
+              "missed_percent,misplaced_features_percent,calibration_percent,exact_in_six_percent,"
+              "exact_when_moved_percent,ended_exact_percent,states,wrong_joint,false_split,wrong,"
+              "moved_states,missed,"
+              "features,misplaced,sure,sure_and_right,six,six_exact,told,told_exact,ended_exact\n");
+    for (const Group &group : groups) {
+        Pushes p = pushes(group);
+        for (int m = OURS; m < METHODS; m++) {
+            Tally tally = sum(group, static_cast<Method>(m));
+            Figures f = figures(tally, group.trials.size());
+            (void)std::fprintf(file, "%s,%g,%s,%zu,%.3f,%.3f,%.3f,%.3f",
+                               quoted(group.object).c_str(), group.noise, method_names[m],
+                               group.trials.size(), p.mean, p.half_width, p.at_cap, p.update_ms);
+            for (double figure : {f.wrong, f.wrong_joint, f.false_split, f.missed, f.misplaced,
+                                  f.calibration, f.exact_in_six, f.exact_when_moved, f.ended_exact})
+                (void)std::fprintf(file, figure < 0.0 ? "," : ",%.3f", figure);
+            csv_counts(file, tally);
+            (void)std::fputc('\n', file);
+        }
+    }
+}
+
+} // namespace grrl_evaluate

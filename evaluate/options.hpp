@@ -1,0 +1,33 @@
+/* options.hpp: the command line of grrl-evaluate. */
+#ifndef GRRL_EVALUATE_OPTIONS_HPP
+#define GRRL_EVALUATE_OPTIONS_HPP
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trial.hpp"
+
+namespace grrl_evaluate
+{
+
+struct Options {
+    std::string objects; /* empty: all */
+    int trials = 50;
+    uint64_t seed = 1;
+    int jobs = 1;
+    std::vector<double> noise{1.0, 2.0}; /* times the default */
+    TrialParams trial;
+    std::string csv; /* empty: none, like the next */
+    std::string svg;
+    bool quiet = false;
+};
+
+enum class OptionsResult { RUN, DONE, BAD };
+
+/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+OptionsResult parse_options(int argc, char **argv, Options &options);
+
+} // namespace grrl_evaluate
+
+#endif

@@ -1,0 +1,264 @@
+/*
+ * grrl-perceive: links and joints from tracked points, without a robot.
+ *
+ * Exit status: 0 fine, 1 the input is wrong or cannot be read, 2 wrong command line.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "handle.h"
+#include "options.h"
+#include "report.h"
+#include "tracks.h"
+
+#include "grrl/grrl.h"
+
+enum { EXIT_FINE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2 };
+enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
+
+/* A pixel is given to the library as a millimetre. */
+static const float pixel_m = 0.001f;
+
+static struct grrl_perception perception;
+
+struct unit {
+    const char *name;
+    float metres;
+};
+
+static int fail(const char *what)
+{
+    (void)fprintf(stderr, "grrl-perceive: %s\n", what);
+    return EXIT_INPUT;
+}
+
+static struct unit unit_of(enum grrl_unit unit, bool in_pixels)
+{
+    if (unit == GRRL_UNIT_AS_IN_FILE)
+        unit = in_pixels ? GRRL_UNIT_PX : GRRL_UNIT_M;
+    return unit == GRRL_UNIT_PX   ? (struct unit){"px", pixel_m}
+           : unit == GRRL_UNIT_MM ? (struct unit){"mm", 0.001f}
+                                  : (struct unit){"m", 1.0f};
+}
+
+static FILE *open_input(const char *path)
+{
+    FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
+    if (file == NULL)
+        (void)fprintf(stderr, "grrl-perceive: %s: %s\n", path, strerror(errno));
+    return file;
+}
+
+/* Whether all that was written to a file has got there. */
+static bool close_output(FILE *file, const char *path)
+{
+    bool good = fflush(file) == 0 && ferror(file) == 0;
+    good = (file == stdout || fclose(file) == 0) && good;
+    if (!good)
+        (void)fprintf(stderr, "grrl-perceive: %s: cannot be written: %s\n", path, strerror(errno));
+    return good;
+}
+
+/* --- a handle --------------------------------------------------------------------------------- */
+
+static int perceive_handle(const struct grrl_perceive_options *options)
+{
+    struct unit unit = unit_of(options->unit, false);
+    struct grrl_tracks_error error;
+    struct grrl_handle handle;
+    FILE *file = open_input(options->handle);
+    if (file == NULL)
+        return EXIT_INPUT;
+    bool good = grrl_handle_read(file, options->handle, unit.metres, &handle, &error);
+    (void)fclose(file);
+    if (!good)
+        return fail(error.text);
+    struct grrl_trajectory_config config;
+    grrl_trajectory_config_default(&config);
+    if (options->noise > 0.0f)
+        config.noise_m = options->noise * unit.metres;
+    struct grrl_trajectory_fit fit;
+    enum grrl_status status = grrl_trajectory_fit(&handle.trajectory, &config, &fit);
+    uint32_t n = handle.trajectory.n;
+    grrl_handle_free(&handle);
+    if (status == GRRL_ERR_NONE)
+        return fail("the handle stays in one place; a movement of some centimetres is needed");
+    if (status == GRRL_ERR_NUMBER)
+        return fail("a position is beyond 1 km; is the unit right? See --unit");
+    if (status != GRRL_OK)
+        return fail(grrl_status_text(status));
+    grrl_handle_print(stdout, &fit, n, unit.name, 1.0 / (double)unit.metres, options->json);
+    return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
+}
+
+/* --- tracks ----------------------------------------------------------------------------------- */
+
+static bool read_tracks(const struct grrl_perceive_options *options, struct grrl_tracks *tracks)
+{
+    struct grrl_tracks_error error;
+    bool good;
+    if (options->log != NULL) {
+        good = grrl_tracks_read_log(options->log, options->trial, tracks, &error);
+    } else {
+        FILE *file = open_input(options->tracks);
+        if (file == NULL)
+            return false;
+        good = grrl_tracks_read_csv(file, options->tracks, tracks, &error);
+        (void)fclose(file);
+    }
+    if (!good)
+        (void)fail(error.text);
+    return good;
+}
+
+/* The configuration of a profile; *name is what it is called. */
+static struct grrl_perception_config configure(const struct grrl_perceive_options *options,
+                                               struct unit unit, const char **name)
+{
+    struct grrl_perception_config config;
+    bool camera = options->profile == GRRL_PROFILE_CAMERA ||
+                  (options->profile == GRRL_PROFILE_OF_UNIT && strcmp(unit.name, "px") == 0);
+    if (camera)
+        grrl_perception_config_camera(&config, pixel_m);
+    else
+        grrl_perception_config_default(&config);
+    if (options->noise > 0.0f)
+        config.noise_m = options->noise * unit.metres;
+    *name = camera ? "camera" : "tracker";
+    return config;
+}
+
+/*
+ * The recording as pushes: frames at rest are averaged, others become keyframes where something has
+ * moved enough. The last frame shows where all has come to lie.
+ */
+static enum grrl_status observe(struct grrl_tracks *tracks, struct unit unit)
+{
+    for (size_t i = 0; i < tracks->n_points; i++) {
+        tracks->x[i] *= unit.metres;
+        tracks->y[i] *= unit.metres;
+    }
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        const struct grrl_tracks_frame *in = &tracks->frame[i];
+        struct grrl_frame frame = {in->n, tracks->id + in->first, tracks->x + in->first,
+                                   tracks->y + in->first};
+        bool pushing = in->pushing && i + 1 < tracks->n_frames;
+        grrl_perception_observe(&perception, &frame, pushing);
+    }
+    return grrl_perception_update(&perception);
+}
+
+static enum grrl_status print_term(const struct grrl_model *model, char *text, size_t capacity)
+{
+    static struct grrl_term_node nodes[TERM_NODES];
+    struct grrl_term_store store;
+    struct grrl_graph graph;
+    struct grrl_name names[GRRL_MAX_LINKS];
+    struct grrl_edge edges[GRRL_MAX_JOINTS];
+    grrl_term term;
+    grrl_term_store_init(&store, nodes, TERM_NODES);
+    grrl_model_graph(model, &graph, names, edges);
+    enum grrl_status status =
+        grrl_graph_to_term(&store, &graph, names, edges, model->n_joints, true, &term);
+    return status == GRRL_OK ? grrl_term_print(&store, term, capacity, text, NULL) : status;
+}
+
+static void warn_of_losses(const struct grrl_report *report, const struct grrl_tracks *tracks)
+{
+    if (tracks->refused > 0)
+        (void)fprintf(stderr, "grrl-perceive: warning: %u damaged messages left out\n",
+                      (unsigned)tracks->refused);
+    if (report->counts->overflow > 0)
+        (void)fprintf(stderr,
+                      "grrl-perceive: warning: %u tracks, but this build holds %d at a time: %u "
+                      "points left out; build with a larger GRRL_MAX_FEATURES\n",
+                      report->tracks, GRRL_MAX_FEATURES, (unsigned)report->counts->overflow);
+    if (report->counts->refused > 0)
+        (void)fprintf(stderr,
+                      "grrl-perceive: warning: %u points too far from the origin left out; is the "
+                      "unit right? See --unit\n",
+                      (unsigned)report->counts->refused);
+    if (report->model->n_bodies == GRRL_MAX_LINKS)
+        (void)fprintf(stderr,
+                      "grrl-perceive: warning: %d bodies are all this build holds; there may be "
+                      "more\n",
+                      GRRL_MAX_LINKS);
+}
+
+static bool write_svg(const char *path, const struct grrl_report *report)
+{
+    FILE *file = fopen(path, "w");
+    if (file == NULL) {
+        (void)fprintf(stderr, "grrl-perceive: %s: %s\n", path, strerror(errno));
+        return false;
+    }
+    grrl_report_svg(file, report);
+    return close_output(file, path);
+}
+
+static int report_model(const struct grrl_perceive_options *options,
+                        const struct grrl_tracks *tracks, struct unit unit, const char *profile)
+{
+    static char term[TERM_BYTES];
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    enum grrl_status status = print_term(model, term, sizeof term);
+    if (status != GRRL_OK)
+        return fail(grrl_status_text(status));
+    double per_metre = 1.0 / (double)unit.metres;
+    struct grrl_report report = {.model = model,
+                                 .counts = &perception.counts,
+                                 .term = term,
+                                 .unit = unit.name,
+                                 .profile = profile,
+                                 .per_metre = per_metre,
+                                 .noise = (double)perception.config.noise_m * per_metre,
+                                 .frames = (unsigned)tracks->n_frames,
+                                 .tracks = (unsigned)grrl_tracks_count_ids(tracks),
+                                 .keyframes = perception.counts.keyframes_high,
+                                 .y_down = strcmp(unit.name, "px") == 0};
+    warn_of_losses(&report, tracks);
+    if (options->svg != NULL && !write_svg(options->svg, &report))
+        return EXIT_INPUT;
+    (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
+    return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
+}
+
+static int perceive_tracks(const struct grrl_perceive_options *options)
+{
+    struct grrl_tracks tracks;
+    if (!read_tracks(options, &tracks))
+        return EXIT_INPUT;
+    struct unit unit = unit_of(options->unit, tracks.in_pixels);
+    int result = EXIT_INPUT;
+    const char *profile;
+    if (options->profile == GRRL_PROFILE_CAMERA && strcmp(unit.name, "px") != 0) {
+        (void)fail("the profile camera is for pixels: name the columns x_px and y_px, or give "
+                   "--unit px");
+    } else {
+        struct grrl_perception_config config = configure(options, unit, &profile);
+        enum grrl_status status = grrl_perception_init(&perception, &config);
+        status = status == GRRL_OK ? observe(&tracks, unit) : status;
+        if (status == GRRL_ERR_NONE)
+            (void)fail("no point is visible in any frame");
+        else if (status != GRRL_OK)
+            (void)fail(grrl_status_text(status));
+        else
+            result = report_model(options, &tracks, unit, profile);
+    }
+    grrl_tracks_free(&tracks);
+    return result;
+}
+
+int main(int argc, char **argv)
+{
+    struct grrl_perceive_options options;
+    switch (grrl_perceive_options_parse(argc, argv, &options)) {
+    case GRRL_OPTIONS_BAD:
+        return EXIT_USAGE;
+    case GRRL_OPTIONS_DONE:
+        return EXIT_FINE;
+    default:
+        return options.handle != NULL ? perceive_handle(&options) : perceive_tracks(&options);
+    }
+}

@@ -1,0 +1,30 @@
+/* options.h: the command line of grrl-perceive. */
+#ifndef GRRL_PERCEIVE_OPTIONS_H
+#define GRRL_PERCEIVE_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum grrl_unit { GRRL_UNIT_AS_IN_FILE, GRRL_UNIT_M, GRRL_UNIT_MM, GRRL_UNIT_PX };
+
+enum grrl_profile { GRRL_PROFILE_OF_UNIT, GRRL_PROFILE_TRACKER, GRRL_PROFILE_CAMERA };
+
+struct grrl_perceive_options {
+    const char *tracks; /* CSV; one of the first three is given */
+    const char *log;    /* LCM log */
+    const char *handle; /* a single trajectory */
+    enum grrl_unit unit;
+    enum grrl_profile profile;
+    float noise;   /* in the unit of the file, 0: as the profile has it */
+    int32_t trial; /* of a log, 0: the last */
+    bool json;
+    const char *svg; /* NULL: no picture */
+};
+
+enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };
+
+/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+enum grrl_options_result grrl_perceive_options_parse(int argc, char **argv,
+                                                     struct grrl_perceive_options *options);
+
+#endif

@@ -1,0 +1,32 @@
+/*
+ * report.h: what perception believes, for people (text), programs (JSON) and the eye (SVG).
+ *
+ * Lengths are printed in the unit of the input: a metre of the library is `per_metre` of them.
+ */
+#ifndef GRRL_PERCEIVE_REPORT_H
+#define GRRL_PERCEIVE_REPORT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "grrl/perception.h"
+
+struct grrl_report {
+    const struct grrl_model *model;
+    const struct grrl_perception_counts *counts;
+    const char *term;
+    const char *unit;    /* "m", "mm" or "px" */
+    const char *profile; /* "tracker" or "camera" */
+    double per_metre;
+    double noise; /* in that unit */
+    unsigned frames;
+    unsigned tracks;    /* ids in the input */
+    unsigned keyframes; /* most at a time */
+    bool y_down;        /* as in pictures */
+};
+
+void grrl_report_text(FILE *file, const struct grrl_report *report);
+void grrl_report_json(FILE *file, const struct grrl_report *report);
+void grrl_report_svg(FILE *file, const struct grrl_report *report);
+
+#endif

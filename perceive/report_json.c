@@ -1,0 +1,91 @@
+#include "report.h"
+
+/* Every text that is printed is ours (terms, names, units): nothing needs escaping. */
+
+static void print_ids(FILE *file, const struct grrl_model *model, unsigned body)
+{
+    const char *separator = "";
+    (void)fputc('[', file);
+    for (unsigned i = 0; i < model->n_features; i++) {
+        if (model->feature_body[i] == body) {
+            (void)fprintf(file, "%s%d", separator, (int)model->feature_id[i]);
+            separator = ", ";
+        }
+    }
+    (void)fputc(']', file);
+}
+
+static void print_body(FILE *file, const struct grrl_report *report, unsigned i)
+{
+    const struct grrl_body *body = &report->model->body[i];
+    const double scale = report->per_metre;
+    (void)fprintf(file,
+                  "    {\"name\": \"f%u\", \"x\": %.6g, \"y\": %.6g, \"length\": %.6g, "
+                  "\"width\": %.6g, \"axis\": [%.6g, %.6g],\n     \"features\": ",
+                  (unsigned)body->number, (double)body->centroid_m.x * scale,
+                  (double)body->centroid_m.y * scale, (double)body->length_m * scale,
+                  (double)body->width_m * scale, (double)body->axis.x, (double)body->axis.y);
+    print_ids(file, report->model, i);
+    (void)fputc('}', file);
+}
+
+static void print_joint(FILE *file, const struct grrl_report *report, unsigned i)
+{
+    const struct grrl_joint *joint = &report->model->joint[i];
+    const struct grrl_body *body = report->model->body;
+    const double scale = report->per_metre;
+    bool slides = joint->type == GRRL_PRISMATIC;
+    double to_unit = slides ? scale : 180.0 / (double)GRRL_PI;
+    (void)fprintf(file, "    {\"a\": \"f%u\", \"b\": \"f%u\", \"type\": \"%s\",\n",
+                  (unsigned)body[joint->a].number, (unsigned)body[joint->b].number,
+                  slides ? "prismatic" : "revolute");
+    (void)fprintf(file,
+                  "     \"probability\": %.6g, \"p_revolute\": %.6g, \"p_prismatic\": %.6g, "
+                  "\"p_disconnected\": %.6g,\n",
+                  (double)joint->probability, (double)joint->p_revolute, (double)joint->p_prismatic,
+                  (double)joint->p_disconnected);
+    (void)fprintf(file, "     \"x\": %.6g, \"y\": %.6g, \"covariance\": [%.6g, %.6g, %.6g],\n",
+                  (double)joint->point_m.x * scale, (double)joint->point_m.y * scale,
+                  (double)joint->point_cov_m2[0] * scale * scale,
+                  (double)joint->point_cov_m2[1] * scale * scale,
+                  (double)joint->point_cov_m2[2] * scale * scale);
+    if (slides)
+        (void)fprintf(file, "     \"axis\": [%.6g, %.6g], \"axis_sd_degrees\": %.6g,\n",
+                      (double)joint->axis.x, (double)joint->axis.y,
+                      (double)joint->axis_sd_rad * 180.0 / (double)GRRL_PI);
+    (void)fprintf(file, "     \"lower\": %.6g, \"upper\": %.6g}", (double)joint->lower * to_unit,
+                  (double)joint->upper * to_unit);
+}
+
+static void print_list(FILE *file, const struct grrl_report *report, const char *name, unsigned n,
+                       void (*print)(FILE *, const struct grrl_report *, unsigned))
+{
+    (void)fprintf(file, "  \"%s\": [", name);
+    for (unsigned i = 0; i < n; i++) {
+        (void)fputs(i == 0 ? "\n" : ",\n", file);
+        print(file, report, i);
+    }
+    (void)fputs(n > 0 ? "\n  ],\n" : "],\n", file);
+}
+
+void grrl_report_json(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_model *model = report->model;
+    const struct grrl_perception_counts *counts = report->counts;
+    (void)fprintf(file, "{\n  \"format\": \"grrl-perceive 1\",\n  \"term\": \"%s\",\n",
+                  report->term);
+    (void)fprintf(file, "  \"unit\": \"%s\", \"profile\": \"%s\", \"noise\": %.6g,\n", report->unit,
+                  report->profile, report->noise);
+    (void)fprintf(file, "  \"frames\": %u, \"tracks\": %u, \"keyframes\": %u,\n", report->frames,
+                  report->tracks, report->keyframes);
+    (void)fprintf(
+        file, "  \"dropped\": {\"outliers\": %u, \"refused\": %u, \"beyond_capacity\": %u},\n",
+        (unsigned)counts->outliers, (unsigned)counts->refused, (unsigned)counts->overflow);
+    print_list(file, report, "bodies", model->n_bodies, print_body);
+    print_list(file, report, "joints", model->n_joints, print_joint);
+    (void)fputs("  \"background\": ", file);
+    print_ids(file, model, GRRL_FEATURE_BACKGROUND);
+    (void)fputs(",\n  \"unassigned\": ", file);
+    print_ids(file, model, GRRL_FEATURE_NONE);
+    (void)fputs("\n}\n", file);
+}

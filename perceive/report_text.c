@@ -1,0 +1,75 @@
+#include "report.h"
+
+static unsigned count_features(const struct grrl_model *model, unsigned body)
+{
+    unsigned n = 0;
+    for (unsigned i = 0; i < model->n_features; i++)
+        n += model->feature_body[i] == body;
+    return n;
+}
+
+static void print_bodies(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_model *model = report->model;
+    (void)fprintf(file, "\nbodies %u\n", (unsigned)model->n_bodies);
+    for (unsigned i = 0; i < model->n_bodies; i++) {
+        const struct grrl_body *body = &model->body[i];
+        (void)fprintf(file, "  f%-3u %3u features, %.4g x %.4g %s at (%.4g, %.4g)\n",
+                      (unsigned)body->number, (unsigned)body->n_features,
+                      (double)body->length_m * report->per_metre,
+                      (double)body->width_m * report->per_metre, report->unit,
+                      (double)body->centroid_m.x * report->per_metre,
+                      (double)body->centroid_m.y * report->per_metre);
+    }
+    (void)fprintf(file, "  background %u features, unassigned %u\n",
+                  count_features(model, GRRL_FEATURE_BACKGROUND),
+                  count_features(model, GRRL_FEATURE_NONE));
+}
+
+static double square_root(double x)
+{
+    return (double)grrl_sqrt((float)(x > 0.0 ? x : 0.0));
+}
+
+static void print_joint(FILE *file, const struct grrl_report *report,
+                        const struct grrl_joint *joint)
+{
+    const struct grrl_model *model = report->model;
+    const double scale = report->per_metre;
+    const double degree = 180.0 / (double)GRRL_PI;
+    bool slides = joint->type == GRRL_PRISMATIC;
+    double to_unit = slides ? scale : degree;
+    (void)fprintf(file, "  f%u f%u %s %.3f (revolute %.3f, prismatic %.3f, disconnected %.3f)\n",
+                  (unsigned)model->body[joint->a].number, (unsigned)model->body[joint->b].number,
+                  slides ? "prismatic" : "revolute", (double)joint->probability,
+                  (double)joint->p_revolute, (double)joint->p_prismatic,
+                  (double)joint->p_disconnected);
+    (void)fprintf(file, "      %s (%.4g, %.4g)", slides ? "through" : "pivot",
+                  (double)joint->point_m.x * scale, (double)joint->point_m.y * scale);
+    if (slides)
+        (void)fprintf(file, " along %.1f +- %.1f degrees",
+                      (double)grrl_atan2(joint->axis.y, joint->axis.x) * degree,
+                      (double)joint->axis_sd_rad * degree);
+    else
+        (void)fprintf(file, " +- (%.2g, %.2g) %s",
+                      square_root((double)joint->point_cov_m2[0]) * scale,
+                      square_root((double)joint->point_cov_m2[2]) * scale, report->unit);
+    (void)fprintf(file, ", seen from %.3g to %.3g %s\n", (double)joint->lower * to_unit,
+                  (double)joint->upper * to_unit, slides ? report->unit : "degrees");
+}
+
+void grrl_report_text(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_model *model = report->model;
+    (void)fprintf(file, "%s\n", report->term);
+    print_bodies(file, report);
+    (void)fprintf(file, "\njoints %u\n", (unsigned)model->n_joints);
+    for (unsigned i = 0; i < model->n_joints; i++)
+        print_joint(file, report, &model->joint[i]);
+    (void)fprintf(file, "\n%u frames of %u tracks, %u keyframes, profile %s, noise %.3g %s\n",
+                  report->frames, report->tracks, report->keyframes, report->profile, report->noise,
+                  report->unit);
+    (void)fprintf(file, "points dropped: %u outliers, %u refused, %u beyond capacity\n",
+                  (unsigned)report->counts->outliers, (unsigned)report->counts->refused,
+                  (unsigned)report->counts->overflow);
+}

@@ -1,0 +1,103 @@
+#!/bin/bash
+# grrl-perceive on recordings made here: a hinge, a slide, a handle; and what it refuses.
+. "$(dirname "$0")/common.sh"
+
+# tracks KIND SCALE: two links of 12 features, the second turned by up to 40 degrees or slid by 30 mm
+tracks() {
+    awk -v kind="$1" -v scale="$2" 'BEGIN {
+        srand(1)
+        print "point,frame,y,x,visible"
+        for (f = 0; f <= 60; f++)
+            for (i = 0; i < 36; i++) {
+                u = 0.13 * (i % 12 + 0.5) / 12
+                v = (i * 7 % 5 - 2) * 0.008
+                if (i < 12) { x = u - 0.13; y = v }
+                else if (i >= 24) { x = (i * 13 % 12 - 6) * 0.15; y = (i * 5 % 7 - 3) * 0.2 + 0.1 }
+                else if (kind == "R") {
+                    a = 0.7 * f / 60
+                    x = u * cos(a) - v * sin(a); y = u * sin(a) + v * cos(a)
+                } else { x = u + 0.03 * f / 60; y = v }
+                if (i < 24) { # the object as a whole turns and moves
+                    b = 0.3 * f / 60
+                    t = x * cos(b) - y * sin(b) + 0.05 * f / 60
+                    y = x * sin(b) + y * cos(b); x = t
+                }
+                n = 0.0002
+                x += n * (rand() + rand() + rand() - 1.5) * 2; y += n * (rand() + rand() - 1) * 2
+                printf "%d,%d,%.6f,%.6f,%d\n", i * 3 + 100, f, y * scale, x * scale, 1
+            }
+    }'
+}
+tracks R 1 >"$WORK/hinge.csv"
+tracks P 1000 >"$WORK/slide.csv"
+
+expect 0 "^grrl-perceive $VERSION\$" --version
+expect 0 '^Usage: grrl-perceive' --help
+expect 0 '^D(lb, R(' "$WORK/hinge.csv"
+expect 0 '^bodies 2$' "$WORK/hinge.csv"
+expect 0 'f1 f2 revolute\|f2 f1 revolute' "$WORK/hinge.csv"
+expect 0 '^D(lb, P(' --unit mm "$WORK/slide.csv"
+expect 0 '"type": "prismatic"' --unit mm --json "$WORK/slide.csv"
+expect 0 '"noise": 0.5,' --unit mm --noise 0.5 --json "$WORK/slide.csv"
+expect 0 'profile tracker, noise 0.7 mm' --unit mm "$WORK/slide.csv"
+expect 0 'profile camera, noise 1 px' --unit px "$WORK/slide.csv"
+expect 0 'profile tracker, noise 1.5 px' --unit px --profile tracker --noise 1.5 "$WORK/slide.csv"
+
+# the order of rows means nothing, standard input is a file
+{ head -1 "$WORK/hinge.csv"; tail -n +2 "$WORK/hinge.csv" | sort -r; } >"$WORK/reversed.csv"
+"$PERCEIVE" --json "$WORK/hinge.csv" >"$WORK/a.json"
+"$PERCEIVE" --json - <"$WORK/reversed.csv" >"$WORK/b.json"
+cmp "$WORK/a.json" "$WORK/b.json" || wrong "the answer depends on the order of the rows"
+if command -v python3 >/dev/null; then
+    python3 -c 'import json, sys
+model = json.load(open(sys.argv[1]))
+assert model["format"] == "grrl-perceive 1", model
+assert len(model["bodies"]) == 2 and len(model["joints"]) == 1, model
+joint = model["joints"][0]
+assert joint["type"] == "revolute" and len(joint["covariance"]) == 3, joint
+total = joint["p_revolute"] + joint["p_prismatic"] + joint["p_disconnected"]
+assert abs(total - 1) < 1e-3, joint
+ids = sorted(i for body in model["bodies"] for i in body["features"])
+assert len(set(ids)) == len(ids) >= 22 and min(ids) >= 100, ids' "$WORK/a.json" ||
+        wrong "the JSON is not as documented"
+fi
+
+# the picture
+expect 0 '^D(lb, R(' --svg "$WORK/hinge.svg" "$WORK/hinge.csv"
+grep -q '<ellipse' "$WORK/hinge.svg" && grep -q '^</svg>$' "$WORK/hinge.svg" || wrong "the picture"
+expect 0 '^D(lb, P(' --unit mm --svg "$WORK/slide.svg" "$WORK/slide.csv"
+grep -q 'stroke-dasharray' "$WORK/slide.svg" || wrong "the picture has no sliding axis"
+expect 1 'No such file' --svg "$WORK/no/folder.svg" "$WORK/hinge.csv"
+
+# more tracks than the library holds are told
+awk 'BEGIN { print "frame,point,x,y"; for (f = 0; f < 3; f++) for (i = 0; i < 1100; i++)
+    printf "%d,%d,%f,%f\n", f, i, i / 1000, f / 100 }' >"$WORK/many.csv"
+expect 0 'warning: 1100 tracks, but this build holds' "$WORK/many.csv"
+printf 'frame,point,x,y\n0,1,5000,0\n1,1,5000,0\n' >"$WORK/far.csv"
+expect 1 'no point is visible' "$WORK/far.csv"
+
+# a handle
+awk 'BEGIN { for (i = 0; i < 80; i++) print 0.4 * cos(i / 50), 0.4 * sin(i / 50), 1.0 }' >"$WORK/door"
+awk 'BEGIN { for (i = 0; i < 80; i++) print 20 * i, 12 * i }' >"$WORK/drawer"
+expect 0 '^revolute 1.000' --handle "$WORK/door"
+expect 0 '"radius": 0.4' --handle "$WORK/door" --json
+expect 0 '^prismatic [01]' --handle "$WORK/drawer" --unit mm
+expect 1 'is the unit right' --handle "$WORK/drawer" --unit m
+
+# what is wrong, and where
+printf 'frame,point,x,y\n0,1,2,oops\n' >"$WORK/bad.csv"
+expect 1 'bad.csv:2:7: oops: a position is a finite number' "$WORK/bad.csv"
+expect 1 'No such file' "$WORK/missing.csv"
+expect 1 'No such file' --log "$WORK/missing.lcm"
+expect 1 'an LCM log with messages on GRRL_POINTS is needed' --log "$WORK/hinge.csv"
+expect 1 'columns x_px and y_px, or give --unit px' --profile camera "$WORK/hinge.csv"
+expect 2 'no input'
+expect 2 'one input only' --handle a b
+expect 2 'one file of tracks only' a b
+expect 2 '--unit inch: must be m, mm or px' --unit inch a
+expect 2 '--profile lidar: must be tracker or camera' --profile lidar a
+expect 2 '--noise 0: must be a number above 0' --noise 0 a
+expect 2 '--trial needs --log' --trial 2 a
+expect 2 'camera is for positions in pixels' --profile camera --unit mm a
+expect 2 'Try grrl-perceive --help' --nonsense
+finish

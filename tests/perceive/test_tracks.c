@@ -1,0 +1,175 @@
+/* The readers of grrl-perceive: what they take, and where they say what is wrong. */
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "handle.h"
+#include "tracks.h"
+
+static FILE *file_of(const char *text, size_t length)
+{
+    FILE *file = tmpfile();
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, length, file), length);
+    rewind(file);
+    return file;
+}
+
+static bool read_text(const char *text, struct grrl_tracks *tracks, struct grrl_tracks_error *error)
+{
+    FILE *file = file_of(text, strlen(text));
+    bool good = grrl_tracks_read_csv(file, "f", tracks, error);
+    assert_int_equal(fclose(file), 0);
+    return good;
+}
+
+static void test_any_order(void **state)
+{
+    (void)state;
+    struct grrl_tracks tracks;
+    struct grrl_tracks_error error;
+    assert_true(read_text("\xef\xbb\xbfy , name,visible,point,frame,x\r\n"
+                          "2.5,\"a b\",1,-7,10,1.5\r\n"
+                          "\r\n"
+                          " 8e-1, ,1, 3 ,10,-4\n"
+                          "9,,1,3,2,6\n"
+                          "nonsense,,0,-7,2,\n",
+                          &tracks, &error));
+    assert_int_equal(tracks.n_frames, 2);
+    assert_int_equal(tracks.n_points, 3);
+    assert_false(tracks.in_pixels);
+    assert_int_equal(grrl_tracks_count_ids(&tracks), 2);
+    assert_int_equal(tracks.frame[0].n, 1);
+    assert_false(tracks.frame[0].pushing);
+    assert_int_equal(tracks.id[0], 3);
+    assert_true(tracks.x[0] == 6.0f && tracks.y[0] == 9.0f);
+    assert_int_equal(tracks.frame[1].first, 1);
+    assert_int_equal(tracks.frame[1].n, 2);
+    assert_true(tracks.frame[1].pushing);
+    assert_int_equal(tracks.id[1], -7);
+    assert_true(tracks.x[1] == 1.5f && tracks.y[1] == 2.5f);
+    assert_true(tracks.x[2] == -4.0f && tracks.y[2] == 0.8f);
+    grrl_tracks_free(&tracks);
+}
+
+static void test_pixels_and_no_end_of_line(void **state)
+{
+    (void)state;
+    struct grrl_tracks tracks;
+    struct grrl_tracks_error error;
+    assert_true(read_text("frame,point,x_px,y_px,truth_group\n0,1,2,3,4", &tracks, &error));
+    assert_true(tracks.in_pixels);
+    assert_int_equal(tracks.n_points, 1);
+    grrl_tracks_free(&tracks);
+}
+
+static void test_what_is_wrong(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        const char *expected;
+    } cases[] = {
+        {"", "f:1:1: the file ends here: the header names the columns frame,point,x,y"},
+        {"frame,point,x,y\n\n", "f:3:1: the file ends here: rows are needed"},
+        {"frame,point,x\n", "f:1:1: there is no column y or y_px: the header names"},
+        {"frame,frame,point,x,y\n", "f:1:7: frame: another column means the same"},
+        {"frame,point,x,y,x_px\n", "f:1:17: x_px: another column means the same"},
+        {"frame,point,x,y\n0,1,2\n", "f:2:1: 3 fields, but the header has 4"},
+        {"frame,point,x,y\n0,1,2,3,4\n", "f:2:1: 5 fields, but the header has 4"},
+        {"frame,point,x,y\n0.5,1,2,3\n", "f:2:1: 0.5: a frame is a whole number"},
+        {"frame,point,x,y\n0,1,2,3\n0,2147483648,2,3\n", "f:3:3: 2147483648: a point is a whole"},
+        {"frame,point,x,y\n0,1, 2x,3\n", "f:2:6: 2x: a position is a finite number"},
+        {"frame,point,x,y\n0,1,2,nan\n", "f:2:7: nan: a position is a finite number"},
+        {"frame,point,x,y\n0,1,,3\n", "f:2:5: a position is a finite number"},
+        {"frame,point,x,y,visible\n0,1,2,3,2\n", "f:2:9: 2: visible is 0 or 1"},
+        {"frame,point,x,y\n0,1,2,3\n1,1,2,3\n0,1,5,6\n",
+         "f:4:1: point 1 of frame 0 stands in line 2 already"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct grrl_tracks tracks;
+        struct grrl_tracks_error error = {""};
+        assert_false(read_text(cases[i].text, &tracks, &error));
+        if (strncmp(error.text, cases[i].expected, strlen(cases[i].expected)) != 0)
+            fail_msg("expected %s\nfound    %s", cases[i].expected, error.text);
+        assert_null(tracks.id);
+    }
+    struct grrl_tracks tracks;
+    struct grrl_tracks_error error;
+    FILE *file = file_of("frame,point,x,y\n0,1\0,2,3\n", 25);
+    assert_false(grrl_tracks_read_csv(file, "f", &tracks, &error));
+    assert_non_null(strstr(error.text, "f:2:1: this is no text"));
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Cut at every byte: an answer or a message, never anything else. */
+static void test_every_cut(void **state)
+{
+    (void)state;
+    static const char text[] = "frame,point,x,y,visible\n0,1,2.5,-3e-1,1\n1,1,2,3,0\n1,2,4,5,1\n";
+    for (size_t n = 0; n < sizeof text; n++) {
+        struct grrl_tracks tracks;
+        struct grrl_tracks_error error = {""};
+        FILE *file = file_of(text, n);
+        if (grrl_tracks_read_csv(file, "f", &tracks, &error))
+            grrl_tracks_free(&tracks);
+        else
+            assert_memory_equal(error.text, "f:", 2);
+        assert_int_equal(fclose(file), 0);
+    }
+}
+
+static bool read_handle(const char *text, struct grrl_handle *handle,
+                        struct grrl_tracks_error *error)
+{
+    FILE *file = file_of(text, strlen(text));
+    bool good = grrl_handle_read(file, "f", 0.001f, handle, error);
+    assert_int_equal(fclose(file), 0);
+    return good;
+}
+
+static void test_handle(void **state)
+{
+    (void)state;
+    struct grrl_handle handle;
+    struct grrl_tracks_error error;
+    assert_true(read_handle("# x y\n 1000 2000\n3 4\t\r\n5,6\n\n7 8\n9 1e3", &handle, &error));
+    assert_int_equal(handle.trajectory.n, 5);
+    assert_int_equal(handle.trajectory.dimensions, 2);
+    assert_true(handle.rows_m[0] == 1.0f && handle.rows_m[9] == 1.0f);
+    grrl_handle_free(&handle);
+    static const struct {
+        const char *text;
+        const char *expected;
+    } cases[] = {
+        {"", "f:1:1: the file ends here; at least five rows"},
+        {"1 2 3\n1 2 3\n1 2 3\n1 2 3\n", "f:5:1: the file ends here; at least five rows"},
+        {"1 2\n1 2 3\n", "f:2:1: three numbers, but the rows before have two"},
+        {"1\n", "f:1:1: one number only"},
+        {"1 2 3 4\n", "f:1:7: a fourth number"},
+        {"1 2\n1 b\n", "f:2:3: a row is two or three finite numbers"},
+        {"1 2m\n", "f:1:3: a row is two or three finite numbers"},
+        {"1 inf\n", "f:1:3: a row is two or three finite numbers"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        assert_false(read_handle(cases[i].text, &handle, &error));
+        if (strncmp(error.text, cases[i].expected, strlen(cases[i].expected)) != 0)
+            fail_msg("expected %s\nfound    %s", cases[i].expected, error.text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_any_order),     cmocka_unit_test(test_pixels_and_no_end_of_line),
+        cmocka_unit_test(test_what_is_wrong), cmocka_unit_test(test_every_cut),
+        cmocka_unit_test(test_handle),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
