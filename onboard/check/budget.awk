@@ -1,6 +1,6 @@
 # A table from what the image, stack.awk and size -A say; the status tells whether it fits.
 function row(what, value, limit) {
-    printf "| %-34s | %10s | %10s |\n", what, value, limit
+    printf "| %-38s | %10s | %10s |\n", what, value, limit
     if (limit != "" && value + 0 > limit + 0)
         over = over "  " what
 }
@@ -13,7 +13,7 @@ $1 ~ /^\.(vectors|text|ARM\.exidx|data)$/ { flash += $2 }
 $1 ~ /^\.(stack|data|bss)$/ { ram += $2 }
 END {
     small = target == "cortex-m4"
-    printf "\n| %-34s | %10s | %10s |\n", target, "measured", "limit"
+    printf "\n| %-38s | %10s | %10s |\n", target, "measured", "limit"
     print "|---|---|---|"
     row("flash, bytes", flash, 131072)
     row("RAM, bytes", ram, small ? 262144 : 327680)

@@ -27,4 +27,4 @@ $SOURCE/onboard/image/main.c:read_input" -f "$SOURCE/onboard/check/stack.awk" "$
 
 "${CROSS}size" -A -d "$image" >"$folder/$target.size"
 awk -v target="$target" -f "$SOURCE/onboard/check/budget.awk" "$output" "$folder/$target.stack" \
-    "$folder/$target.size" || fail "over the budget"
+    "$folder/$target.size" | tee "$folder/$target.table" || fail "over the budget"
