@@ -8,8 +8,7 @@ enum {
     JUMPS_UNTIL_NEW = 5   /* a point that stays away this long is another feature */
 };
 
-#define REST_SIGMAS 6.0f   /* points of one place at rest lie this near their mean, */
-#define WINDOW_TRAVEL 2.0f /* and in a push within this share of keyframe_m */
+#define REST_SIGMAS 6.0f /* points of one place at rest lie this near their mean */
 
 void grrl_perception_config_default(struct grrl_perception_config *config)
 {
@@ -206,8 +205,7 @@ static uint8_t window_mean(const struct grrl_perception *p, uint16_t slot, struc
  */
 static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_vec2 point)
 {
-    float reach =
-        p->moving ? WINDOW_TRAVEL * p->config.keyframe_m : REST_SIGMAS * p->config.noise_m;
+    float reach = p->moving ? p->config.jump_m : REST_SIGMAS * p->config.noise_m;
     for (int h = 0; h < 2; h++) {
         struct grrl_perception_sum *sum = &p->window.heap[h][slot];
         bool near = sum->n > 0 && grrl_distance2(point, mean_of(sum)) < reach * reach;
