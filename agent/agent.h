@@ -49,9 +49,9 @@ struct grrl_agent_config {
                                struct grrl_decision *decision);
     void *context;
     struct grrl_experience_state *states; /* memory, see grrl_experience_init */
-    uint16_t states_capacity;
+    uint32_t states_capacity;
     struct grrl_experience *experiences;
-    uint16_t experiences_capacity;
+    uint32_t experiences_capacity;
 };
 
 struct grrl_agent_counts {

@@ -71,7 +71,7 @@ static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
         grrl_learner_adopt(&agent->learner, (uint16_t)seen->link_number, direction, &decision) !=
             GRRL_OK)
         return false;
-    uint16_t used = decision.choice.from.experience;
+    uint32_t used = decision.choice.from.experience;
     if (seen->reason == GRRL_DECISION_T_EXPLOIT && used != GRRL_NO_EXPERIENCE)
         grrl_experience_touch(&agent->learner.store, used);
     return true;

@@ -40,7 +40,7 @@ static const struct {
 } table[] = {
     {OPT_POLICY, "policy", "learn|random", "how pushes are chosen (learn)"},
     {OPT_STORE, "store", "FILE", "load experiences from FILE and save them there after each trial"},
-    {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 60000 (1000)"},
+    {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 1000000 (1000)"},
     {OPT_SEED, "seed", "N", "seed of all random choices (1)"},
     {OPT_ALPHA, "alpha", "X", "learning rate, above 0 to 1"},
     {OPT_GAMMA, "gamma", "X", "discount of later rewards, 0 to below 1"},
@@ -134,8 +134,8 @@ static bool take(enum option_id id, const char *text, struct grrl_agent_options 
         options->store = text;
         return true;
     case OPT_EXPERIENCES:
-        good = parse_unsigned("experiences", text, 1, 60000, "a number from 1 to 60000", &n);
-        options->experiences = (uint16_t)n;
+        good = parse_unsigned("experiences", text, 1, 1000000, "a number from 1 to 1000000", &n);
+        options->experiences = (uint32_t)n;
         return good;
     case OPT_SEED:
         good = parse_unsigned("seed", text, 0, UINT64_MAX, "a number from 0", &n);

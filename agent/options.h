@@ -11,7 +11,7 @@ struct grrl_agent_options {
     struct grrl_learner_config learner;
     const char *store;   /* NULL: experiences are not kept */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
-    uint16_t experiences;
+    uint32_t experiences;
     bool observe;
     bool quiet;
     bool explain;

@@ -53,11 +53,9 @@ Verdict Supervisor::judge(const grrl_graph &believed) const
     if (verdict.missing_links != 0 || verdict.missing_revolute != 0 ||
         verdict.missing_prismatic != 0)
         return verdict;
-    grrl_match match;
     uint8_t map[GRRL_MAX_LINKS];
-    grrl_match_begin(&match, GRRL_MATCH_ISOMORPHISM, &truth_, &believed, GRRL_NO_PROPERTIES,
-                     GRRL_MATCH_BUDGET);
-    grrl_status status = grrl_match_next(&match, map);
+    grrl_status status = grrl_match_find(GRRL_MATCH_ISOMORPHISM, &truth_, &believed,
+                                         GRRL_NO_PROPERTIES, GRRL_MATCH_BUDGET, map);
     verdict.correct = status == GRRL_OK;
     verdict.undecided = status == GRRL_ERR_UNDECIDED;
     return verdict;

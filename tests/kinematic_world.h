@@ -28,7 +28,8 @@ struct kinematic_world {
     int body[WORLD_POINTS]; /* -1: background */
     struct grrl_vec2 local[WORLD_POINTS];
     int32_t id[WORLD_POINTS];
-    float missing; /* share of points not seen in a frame */
+    float missing;  /* share of points not seen in a frame */
+    float outliers; /* share of points up to 5 cm away */
     float x[WORLD_POINTS];
     float y[WORLD_POINTS];
     int32_t seen[WORLD_POINTS];
@@ -142,6 +143,10 @@ static inline struct grrl_frame world_frame(struct kinematic_world *w)
         w->seen[n] = w->id[i];
         w->x[n] = at.x + w->noise_m * world_normal(w);
         w->y[n] = at.y + w->noise_m * world_normal(w);
+        if (w->outliers > 0.0f && grrl_random_uniform(&w->random) < w->outliers) {
+            w->x[n] += world_uniform(w, -0.05f, 0.05f);
+            w->y[n] += world_uniform(w, -0.05f, 0.05f);
+        }
         n++;
     }
     return (struct grrl_frame){n, w->seen, w->x, w->y};

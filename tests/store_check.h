@@ -29,22 +29,24 @@ static inline void check_store(const struct grrl_experience_store *store)
     assert_true(store->n_experiences <= store->experiences_capacity);
     assert_true(store->high_water >= store->n_experiences);
     unsigned listed = 0;
-    for (uint16_t s = 0; s < store->n_states; ++s) {
+    for (uint32_t s = 0; s < store->n_states; ++s) {
         const struct grrl_experience_state *state = &store->states[s];
         unsigned count = 0;
-        for (uint16_t i = state->first; i != GRRL_NO_EXPERIENCE; i = store->experiences[i].next) {
+        for (uint32_t i = state->first; i != GRRL_NO_EXPERIENCE; i = store->experiences[i].next) {
             assert_true(i < store->n_experiences);
             assert_int_equal(store->experiences[i].state, s);
-            assert_true(store->experiences[i].link < state->graph.n);
+            assert_true(store->experiences[i].link < state->n);
             assert_true(store->experiences[i].used_at <= store->clock);
             assert_true(++count <= store->n_experiences);
         }
         assert_int_equal(state->experiences, count);
         assert_true(count > 0);
         listed += count;
-        for (uint16_t other = 0; other < s; ++other) {
-            assert_false(
-                grrl_graph_equal(&state->graph, &store->states[other].graph, GRRL_ALL_PROPERTIES));
+        for (uint32_t other = 0; other < s; ++other) {
+            struct grrl_graph graphs[2];
+            grrl_experience_graph(state, &graphs[0]);
+            grrl_experience_graph(&store->states[other], &graphs[1]);
+            assert_false(grrl_graph_equal(&graphs[0], &graphs[1], GRRL_ALL_PROPERTIES));
         }
     }
     assert_int_equal(listed, store->n_experiences);

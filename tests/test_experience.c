@@ -20,7 +20,7 @@ static struct grrl_experience experiences[EXPERIENCES];
 
 static const struct grrl_recall_config everything = {GRRL_RECALL_SUBSTRUCTURE, GRRL_MATCH_BUDGET};
 
-static void init(struct grrl_experience_store *store, uint16_t n_states, uint16_t n_experiences)
+static void init(struct grrl_experience_store *store, uint32_t n_states, uint32_t n_experiences)
 {
     grrl_experience_init(store, states, n_states, experiences, n_experiences);
 }
@@ -40,10 +40,10 @@ static struct grrl_graph chain(const char *joints, grrl_label label)
     return graph;
 }
 
-static uint16_t teach(struct grrl_experience_store *store, const struct grrl_graph *state,
+static uint32_t teach(struct grrl_experience_store *store, const struct grrl_graph *state,
                       uint8_t link, uint8_t direction, float target)
 {
-    uint16_t index;
+    uint32_t index;
     assert_int_equal(grrl_experience_update(store, state, link, direction, target, 0.5f, &index),
                      GRRL_OK);
     check_store(store);
@@ -57,7 +57,7 @@ static void statistics_follow_the_targets(void **state)
     init(&store, STATES, EXPERIENCES);
     struct grrl_graph graph = chain("RP", 0);
     const float target[] = {1.0f, 3.0f, 2.0f, -1.0f};
-    uint16_t index = 0;
+    uint32_t index = 0;
     for (int i = 0; i < 4; ++i) {
         index = teach(&store, &graph, 0, 2, target[i]);
     }
@@ -87,7 +87,7 @@ static void isomorphic_states_and_symmetric_actions_share_an_entry(void **state)
         for (uint8_t i = 0; i < graph.n; ++i) {
             place[order[i]] = i;
         }
-        uint16_t first = teach(&store, &graph, 1, 3, 1.0f);
+        uint32_t first = teach(&store, &graph, 1, 3, 1.0f);
         assert_int_equal(teach(&store, &graph, 3, 3, 1.0f), first);
         assert_int_equal(teach(&store, &shuffled, place[1], 3, 1.0f), first);
         assert_int_equal(teach(&store, &shuffled, place[3], 3, 1.0f), first);
@@ -114,7 +114,7 @@ static void closer_matches_come_first(void **state)
     struct grrl_graph longer = chain("RPR", GRRL_PROPERTY_SMALL);
     struct grrl_graph longest = chain("RPRR", GRRL_PROPERTY_SMALL);
     struct grrl_recall recall;
-    uint16_t a = teach(&store, &longest, 0, 0, 1.0f);
+    uint32_t a = teach(&store, &longest, 0, 0, 1.0f);
     grrl_experience_recall(&store, &small, &everything, &recall);
     assert_int_equal(recall.n_links, 3);
     assert_int_equal(recall.entry[0][0].experience, a);
@@ -122,19 +122,19 @@ static void closer_matches_come_first(void **state)
     assert_int_equal(recall.entry[0][0].distance, 4);
     assert_int_equal(recall.entry[0][0].dropped, 0);
     assert_int_equal(recall.entry[2][0].experience, GRRL_NO_EXPERIENCE);
-    uint16_t b = teach(&store, &longer, 0, 0, 1.0f);
+    uint32_t b = teach(&store, &longer, 0, 0, 1.0f);
     grrl_experience_recall(&store, &small, &everything, &recall);
     assert_int_equal(recall.entry[0][0].experience, b);
     assert_int_equal(recall.entry[0][0].distance, 2);
     grrl_experience_recall(&store, &large, &everything, &recall);
     assert_int_equal(recall.entry[0][0].dropped, 1);
-    uint16_t c = teach(&store, &large, 0, 0, 1.0f);
+    uint32_t c = teach(&store, &large, 0, 0, 1.0f);
     grrl_experience_recall(&store, &small, &everything, &recall);
     assert_int_equal(recall.entry[0][0].experience, c);
     assert_int_equal(recall.entry[0][0].level, GRRL_RECALL_RELAXED);
     assert_int_equal(recall.entry[0][0].distance, 0);
     assert_int_equal(recall.entry[0][0].dropped, 1);
-    uint16_t d = teach(&store, &small, 0, 0, 1.0f);
+    uint32_t d = teach(&store, &small, 0, 0, 1.0f);
     grrl_experience_recall(&store, &small, &everything, &recall);
     assert_int_equal(recall.entry[0][0].experience, d);
     assert_int_equal(recall.entry[0][0].level, GRRL_RECALL_EXACT);
@@ -183,7 +183,7 @@ static void many_mappings_still_bind_every_link(void **state)
     init(&store, STATES, EXPERIENCES);
     struct grrl_graph small = star(5);
     struct grrl_graph big = star(7);
-    uint16_t leaf = teach(&store, &small, 5, 0, 1.0f);
+    uint32_t leaf = teach(&store, &small, 5, 0, 1.0f);
     struct grrl_recall recall;
     grrl_experience_recall(&store, &big, &everything, &recall);
     assert_int_equal(recall.entry[0][0].experience, GRRL_NO_EXPERIENCE);
@@ -318,14 +318,15 @@ static void check_against_naive(const struct grrl_experience_store *store,
     grrl_experience_recall(store, current, &everything, &recall);
     assert_int_equal(recall.n_links, current->n);
     for (uint8_t c = 0; c < current->n; ++c) {
-        uint16_t best[GRRL_DIRECTIONS];
+        uint32_t best[GRRL_DIRECTIONS];
         uint32_t closest[GRRL_DIRECTIONS];
         memset(best, 0xff, sizeof best);
         memset(closest, 0xff, sizeof closest);
-        for (uint16_t i = 0; i < store->n_experiences; ++i) {
+        for (uint32_t i = 0; i < store->n_experiences; ++i) {
             const struct grrl_experience *e = &store->experiences[i];
-            uint32_t closeness =
-                naive_closeness(&store->states[e->state].graph, e->link, current, c);
+            struct grrl_graph stored;
+            grrl_experience_graph(&store->states[e->state], &stored);
+            uint32_t closeness = naive_closeness(&stored, e->link, current, c);
             bool tie = best[e->direction] != GRRL_NO_EXPERIENCE &&
                        closeness == closest[e->direction] && closeness != UINT32_MAX;
             if (closeness < closest[e->direction] ||
@@ -376,7 +377,7 @@ static void the_experience_used_longest_ago_makes_room(void **state)
     init(&store, STATES, 3);
     struct grrl_graph graph = chain("RP", 0);
     struct grrl_graph other = chain("RRP", 0);
-    uint16_t first = teach(&store, &graph, 0, 0, 1.0f);
+    uint32_t first = teach(&store, &graph, 0, 0, 1.0f);
     (void)teach(&store, &other, 0, 1, 2.0f);
     (void)teach(&store, &graph, 0, 2, 3.0f);
     grrl_experience_touch(&store, first);
@@ -423,7 +424,7 @@ static void small_stores_stay_sound(void **state)
     print_message("seed %llu\n", (unsigned long long)SEED);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 3);
-    const uint16_t capacity[][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 5}, {5, 5}, {5, 2}};
+    const uint32_t capacity[][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 5}, {5, 5}, {5, 2}};
     for (unsigned k = 0; k < sizeof capacity / sizeof capacity[0]; ++k) {
         struct grrl_experience_store store;
         init(&store, capacity[k][0], capacity[k][1]);
@@ -431,7 +432,7 @@ static void small_stores_stay_sound(void **state)
             struct grrl_graph graph = random_graph(&random);
             uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
             uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
-            uint16_t index = teach(&store, &graph, link, direction, (float)i);
+            uint32_t index = teach(&store, &graph, link, direction, (float)i);
             assert_true(store.experiences[index].used_at == store.clock);
             struct grrl_recall recall;
             grrl_experience_recall(&store, &graph, &everything, &recall);
@@ -444,13 +445,52 @@ static void small_stores_stay_sound(void **state)
     }
 }
 
+/* The same lessons in a store with an index, in one without, and in one indexed at the end. */
+static void an_index_changes_nothing_that_is_recalled(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    static struct grrl_experience_state more_states[2][STATES];
+    static struct grrl_experience more_experiences[2][EXPERIENCES];
+    static uint64_t index[2][STATES * GRRL_SIGNATURE_WORDS];
+    struct grrl_experience_store plain;
+    struct grrl_experience_store indexed[2];
+    init(&plain, STATES, EXPERIENCES);
+    for (int k = 0; k < 2; ++k) {
+        grrl_experience_init(&indexed[k], more_states[k], STATES, more_experiences[k], EXPERIENCES);
+    }
+    grrl_experience_use_index(&indexed[0], index[0]);
+    struct grrl_random random;
+    grrl_random_init(&random, SEED, 4);
+    for (int i = 0; i < 1000; ++i) {
+        struct grrl_graph graph = random_graph(&random);
+        struct grrl_recall expected;
+        grrl_experience_recall(&plain, &graph, &everything, &expected);
+        for (int k = 0; k < 2; ++k) {
+            struct grrl_recall recall;
+            grrl_experience_recall(&indexed[k], &graph, &everything, &recall);
+            assert_memory_equal(recall.entry, expected.entry, sizeof recall.entry);
+        }
+        uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
+        uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
+        uint32_t entry = teach(&plain, &graph, link, direction, 1.0f);
+        for (int k = 0; k < 2; ++k) {
+            assert_int_equal(teach(&indexed[k], &graph, link, direction, 1.0f), entry);
+        }
+        if (i == 600) {
+            grrl_experience_use_index(&indexed[1], index[1]);
+        }
+    }
+    assert_true(plain.evictions > 100);
+}
+
 static void what_cannot_be_stored_is_refused(void **state)
 {
     (void)state;
     struct grrl_experience_store store;
     init(&store, 1, 1);
     struct grrl_graph graph = chain("R", 0);
-    uint16_t i = 7;
+    uint32_t i = 7;
     assert_int_equal(grrl_experience_update(&store, &graph, 2, 0, 1.0f, 0.5f, &i),
                      GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_experience_update(&store, &graph, 0, 6, 1.0f, 0.5f, &i),
@@ -499,6 +539,7 @@ int main(void)
         cmocka_unit_test(the_experience_used_longest_ago_makes_room),
         cmocka_unit_test(the_state_used_longest_ago_makes_room),
         cmocka_unit_test(small_stores_stay_sound),
+        cmocka_unit_test(an_index_changes_nothing_that_is_recalled),
         cmocka_unit_test(what_cannot_be_stored_is_refused),
         cmocka_unit_test(an_empty_store_knows_nothing),
     };

@@ -12,7 +12,7 @@
 
 #define SEED UINT64_C(20080628)
 
-enum { STATES = 12, EXPERIENCES = 30, FILE_BYTES = 8192, HEADER = 20, CRC = 4, EXPERIENCE = 28 };
+enum { STATES = 12, EXPERIENCES = 30, FILE_BYTES = 8192, HEADER = 24, CRC = 4, EXPERIENCE = 30 };
 
 /* A file in memory; the calls_left-th call fails, -1: none does. */
 struct memory_file {
@@ -58,7 +58,7 @@ struct fixture {
 static struct fixture original, copy;
 static struct memory_file file, second;
 
-static void init(struct fixture *fixture, uint16_t states, uint16_t experiences)
+static void init(struct fixture *fixture, uint32_t states, uint32_t experiences)
 {
     grrl_experience_init(&fixture->store, fixture->states, states, fixture->experiences,
                          experiences);
@@ -136,7 +136,7 @@ static void what_was_saved_is_loaded_and_saved_again(void **state)
     check_store(&copy.store);
     assert_int_equal(copy.store.clock, original.store.clock);
     assert_int_equal(copy.store.high_water, original.store.n_experiences);
-    for (uint16_t i = 0; i < original.store.n_experiences; ++i) {
+    for (uint32_t i = 0; i < original.store.n_experiences; ++i) {
         const struct grrl_experience *a = &original.experiences[i];
         const struct grrl_experience *b = &copy.experiences[i];
         assert_int_equal(a->state, b->state);
@@ -170,7 +170,7 @@ static void a_loaded_store_goes_on_like_the_first(void **state)
                 assert_int_equal(a.entry[k][d].experience, b.entry[k][d].experience);
             }
         }
-        uint16_t x, y;
+        uint32_t x, y;
         assert_int_equal(
             grrl_experience_update(&original.store, &graph, link, direction, 1.0f, 0.3f, &x),
             GRRL_OK);
@@ -186,7 +186,7 @@ static void an_empty_store_is_a_file_too(void **state)
     init(&original, 1, 1);
     assert_int_equal(save(&original, &file), GRRL_OK);
     assert_int_equal(file.size, HEADER + CRC);
-    const uint8_t start[] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0, 1, 0, GRRL_MAX_PROPERTIES, 6};
+    const uint8_t start[] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0, 2, 0, GRRL_MAX_PROPERTIES, 6};
     assert_memory_equal(file.bytes, start, sizeof start);
     assert_int_equal(load(&copy, &file), GRRL_OK);
     check_empty(&copy.store);
@@ -206,7 +206,7 @@ static void a_file_cut_anywhere_leaves_an_empty_store(void **state)
 static void a_failing_callback_is_told(void **state)
 {
     (void)state;
-    int records = 1 + original.store.n_states + original.store.n_experiences;
+    int records = 1 + (int)original.store.n_states + (int)original.store.n_experiences;
     for (int calls = 0; calls < records; ++calls) {
         second.calls_left = calls;
         assert_int_equal(save(&original, &second), GRRL_ERR_IO);
@@ -341,12 +341,12 @@ static void content_that_save_never_writes_is_corrupt(void **state)
         {HEADER + CRC, 33},          /* more than any build has */
         {first + 0, STATES},         /* no such state */
         {first + 1, 1},              /* */
-        {first + 2, 32},             /* no such link */
-        {first + 3, 6},              /* no such direction */
-        {first + 7, 0xff},           /* used later than the clock says */
-        {first + 11, 0x7f},          /* the value 1e38 or so */
-        {first + 15, 0xff},          /* the mean likewise */
-        {first + 19, 0xbf},          /* a negative sum of squares */
+        {first + 4, 32},             /* no such link */
+        {first + 5, 6},              /* no such direction */
+        {first + 9, 0xff},           /* used later than the clock says */
+        {first + 13, 0x7f},          /* the value 1e38 or so */
+        {first + 17, 0xff},          /* the mean likewise */
+        {first + 21, 0xbf},          /* a negative sum of squares */
         {experience_at(1) - 4, 0xff} /* a wrong CRC alone, not signed again below */
     };
     enum { DAMAGES = sizeof damage / sizeof damage[0] };
@@ -365,7 +365,7 @@ static void content_that_save_never_writes_is_corrupt(void **state)
     sign(&second);
     assert_int_equal(load(&copy, &second), GRRL_ERR_CORRUPT);
     memcpy(&second, &file, sizeof file); /* nothing met */
-    memset(second.bytes + first + 20, 0, 4);
+    memset(second.bytes + first + 22, 0, 4);
     sign(&second);
     assert_int_equal(load(&copy, &second), GRRL_ERR_CORRUPT);
     memcpy(&second, &file, sizeof file); /* experiences exchanged, each with its own CRC */
@@ -402,7 +402,7 @@ static void other_versions_and_builds_are_told(void **state)
     const struct {
         size_t at;
         uint8_t value;
-    } other[] = {{8, 2}, {9, 1}, {10, GRRL_MAX_PROPERTIES + 1}, {11, 8}};
+    } other[] = {{8, 1}, {9, 1}, {10, GRRL_MAX_PROPERTIES + 1}, {11, 8}};
     for (unsigned i = 0; i < sizeof other / sizeof other[0]; ++i) {
         memcpy(&second, &file, sizeof file);
         second.bytes[other[i].at] = other[i].value;
@@ -417,10 +417,10 @@ static void a_file_larger_than_the_store_is_told(void **state)
     (void)state;
     init(&copy, original.store.n_states, original.store.n_experiences);
     assert_int_equal(load(&copy, &file), GRRL_OK);
-    init(&copy, (uint16_t)(original.store.n_states - 1), EXPERIENCES);
+    init(&copy, (uint32_t)(original.store.n_states - 1), EXPERIENCES);
     assert_int_equal(load(&copy, &file), GRRL_ERR_FULL);
     check_empty(&copy.store);
-    init(&copy, STATES, (uint16_t)(original.store.n_experiences - 1));
+    init(&copy, STATES, (uint32_t)(original.store.n_experiences - 1));
     assert_int_equal(load(&copy, &file), GRRL_ERR_FULL);
     init(&copy, 1, 1);
     assert_int_equal(load(&copy, &file), GRRL_ERR_FULL);

@@ -335,6 +335,23 @@ static void missing_features_are_no_harm(void **state)
     assert_true(is_the_chain(grrl_perception_model(&perception)));
 }
 
+static void outliers_do_not_draw_the_means(void **state)
+{
+    (void)state;
+    int complete = 0;
+    for (uint64_t seed = 50; seed < 60; seed++) {
+        start(seed, "RRR");
+        world.missing = 0.2f;
+        world.outliers = 0.02f;
+        for (int i = 0; i < 6; i++) {
+            move_one(1 + i % 3, i < 3 ? 0.35f : -0.3f);
+        }
+        complete += is_the_chain(grrl_perception_model(&perception));
+    }
+    print_message("seeds 50 to 59: %d of 10 chains complete\n", complete);
+    assert_true(complete >= 9);
+}
+
 static void bad_points_are_refused_and_counted(void **state)
 {
     (void)state;
@@ -435,6 +452,7 @@ int main(void)
         cmocka_unit_test(random_chains_are_found),
         cmocka_unit_test(order_and_ids_of_points_do_not_matter),
         cmocka_unit_test(missing_features_are_no_harm),
+        cmocka_unit_test(outliers_do_not_draw_the_means),
         cmocka_unit_test(bad_points_are_refused_and_counted),
         cmocka_unit_test(a_jump_is_an_outlier_a_long_one_a_new_feature),
         cmocka_unit_test(more_features_than_fit_are_counted),

@@ -29,7 +29,7 @@ static void know(unsigned action, float value, float deviations, uint32_t n)
 {
     f.experiences[action].q = (struct grrl_q){value, value, deviations, n};
     f.recall.entry[action / GRRL_DIRECTIONS][action % GRRL_DIRECTIONS] = (struct grrl_recall_entry){
-        .experience = (uint16_t)action, .level = GRRL_RECALL_SUBSTRUCTURE, .distance = 3};
+        .experience = (uint32_t)action, .level = GRRL_RECALL_SUBSTRUCTURE, .distance = 3};
 }
 
 static int set_up(void **state)

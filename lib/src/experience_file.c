@@ -6,11 +6,11 @@
 
 /* The layout is described in experience.h. */
 enum {
-    FILE_VERSION = 1,
-    HEADER_BYTES = 20,
+    FILE_VERSION = 2,
+    HEADER_BYTES = 24,
     CRC_BYTES = 4,
     LINK_BYTES = 16,
-    EXPERIENCE_BYTES = 24,
+    EXPERIENCE_BYTES = 26,
     MOST_BYTES = 1 + LINK_BYTES * GRRL_MAX_LINKS + CRC_BYTES
 };
 
@@ -73,23 +73,24 @@ enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
     put(&record, FILE_VERSION, 2);
     put(&record, GRRL_MAX_PROPERTIES, 1);
     put(&record, GRRL_DIRECTIONS, 1);
-    put(&record, store->n_states, 2);
-    put(&record, store->n_experiences, 2);
+    put(&record, store->n_states, 4);
+    put(&record, store->n_experiences, 4);
     put(&record, store->clock, 4);
     enum grrl_status status = write_record(&record);
-    for (uint16_t i = 0; i < store->n_states && status == GRRL_OK; ++i) {
-        const struct grrl_graph *graph = &store->states[i].graph;
-        put(&record, graph->n, 1);
-        for (uint8_t link = 0; link < graph->n; ++link) {
-            put(&record, graph->label[link], 8);
-            put(&record, graph->joined[GRRL_REVOLUTE][link], 4);
-            put(&record, graph->joined[GRRL_PRISMATIC][link], 4);
+    for (uint32_t i = 0; i < store->n_states && status == GRRL_OK; ++i) {
+        struct grrl_graph graph;
+        grrl_experience_graph(&store->states[i], &graph);
+        put(&record, graph.n, 1);
+        for (uint8_t link = 0; link < graph.n; ++link) {
+            put(&record, graph.label[link], 8);
+            put(&record, graph.joined[GRRL_REVOLUTE][link], 4);
+            put(&record, graph.joined[GRRL_PRISMATIC][link], 4);
         }
         status = write_record(&record);
     }
-    for (uint16_t i = 0; i < store->n_experiences && status == GRRL_OK; ++i) {
+    for (uint32_t i = 0; i < store->n_experiences && status == GRRL_OK; ++i) {
         const struct grrl_experience *experience = &store->experiences[i];
-        put(&record, experience->state, 2);
+        put(&record, experience->state, 4);
         put(&record, experience->link, 1);
         put(&record, experience->direction, 1);
         put(&record, experience->used_at, 4);
@@ -137,8 +138,8 @@ static enum grrl_status check_crc(struct record *record, size_t bytes)
 }
 
 struct header {
-    uint16_t n_states;
-    uint16_t n_experiences;
+    uint32_t n_states;
+    uint32_t n_experiences;
     uint32_t clock;
 };
 
@@ -157,8 +158,8 @@ static enum grrl_status read_header(const struct grrl_experience_store *store,
     }
     bool fits = take(record, 1) == GRRL_MAX_PROPERTIES;
     fits = take(record, 1) == GRRL_DIRECTIONS && fits;
-    header->n_states = (uint16_t)take(record, 2);
-    header->n_experiences = (uint16_t)take(record, 2);
+    header->n_states = (uint32_t)take(record, 4);
+    header->n_experiences = (uint32_t)take(record, 4);
     header->clock = (uint32_t)take(record, 4);
     if (check_crc(record, HEADER_BYTES) != GRRL_OK) {
         return GRRL_ERR_CORRUPT;
@@ -223,15 +224,20 @@ static enum grrl_status read_state(struct grrl_experience_store *store, struct r
         graph.joined[GRRL_REVOLUTE][i] = (uint32_t)take(record, 4);
         graph.joined[GRRL_PRISMATIC][i] = (uint32_t)take(record, 4);
     }
-    struct grrl_canonical canonical;
-    uint32_t shape;
-    if (check_crc(record, 1 + size) != GRRL_OK || !is_graph(&graph) ||
-        !grrl_experience_describe(&graph, &canonical, &shape) ||
-        !grrl_graph_equal(&graph, &canonical.graph, GRRL_ALL_PROPERTIES) ||
-        grrl_experience_find_state(store, &canonical) != GRRL_NO_STATE) {
+    if (check_crc(record, 1 + size) != GRRL_OK || !is_graph(&graph)) {
         return GRRL_ERR_CORRUPT;
     }
-    (void)grrl_experience_add_state(store, &canonical, shape);
+    struct grrl_experience_state described;
+    if (!grrl_experience_describe(&graph, &described, NULL)) {
+        return GRRL_ERR_CORRUPT;
+    }
+    struct grrl_graph canonical;
+    grrl_experience_graph(&described, &canonical);
+    if (!grrl_graph_equal(&graph, &canonical, GRRL_ALL_PROPERTIES) ||
+        grrl_experience_find_state(store, &described) != GRRL_NO_STATE) {
+        return GRRL_ERR_CORRUPT;
+    }
+    (void)grrl_experience_add_state(store, &described);
     return GRRL_OK;
 }
 
@@ -246,7 +252,7 @@ static enum grrl_status read_experience(struct grrl_experience_store *store, str
     if (read_more(record, EXPERIENCE_BYTES + CRC_BYTES) != GRRL_OK) {
         return GRRL_ERR_IO;
     }
-    uint16_t state = (uint16_t)take(record, 2);
+    uint32_t state = (uint32_t)take(record, 4);
     uint8_t link = (uint8_t)take(record, 1);
     uint8_t direction = (uint8_t)take(record, 1);
     uint32_t used_at = (uint32_t)take(record, 4);
@@ -255,7 +261,7 @@ static enum grrl_status read_experience(struct grrl_experience_store *store, str
     q.deviations = take_float(record);
     q.n = (uint32_t)take(record, 4);
     bool fine = check_crc(record, EXPERIENCE_BYTES) == GRRL_OK && state < store->n_states &&
-                link < store->states[state < store->n_states ? state : 0].graph.n &&
+                link < store->states[state < store->n_states ? state : 0].n &&
                 direction < GRRL_DIRECTIONS && used_at <= clock && is_target(q.value) &&
                 is_target(q.mean) && grrl_is_finite(q.deviations) && q.deviations >= 0.0f &&
                 q.n > 0 &&
@@ -263,7 +269,7 @@ static enum grrl_status read_experience(struct grrl_experience_store *store, str
     if (!fine) {
         return GRRL_ERR_CORRUPT;
     }
-    uint16_t index = grrl_experience_add(store, state, link, direction);
+    uint32_t index = grrl_experience_add(store, state, link, direction);
     store->experiences[index].used_at = used_at;
     store->experiences[index].q = q;
     return GRRL_OK;
@@ -275,13 +281,13 @@ static enum grrl_status read_all(struct grrl_experience_store *store,
     struct record record = {.io = io};
     struct header header;
     enum grrl_status status = read_header(store, &record, &header);
-    for (uint16_t i = 0; status == GRRL_OK && i < header.n_states; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < header.n_states; ++i) {
         status = read_state(store, &record);
     }
-    for (uint16_t i = 0; status == GRRL_OK && i < header.n_experiences; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < header.n_experiences; ++i) {
         status = read_experience(store, &record, header.clock);
     }
-    for (uint16_t i = 0; status == GRRL_OK && i < store->n_states; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < store->n_states; ++i) {
         status = store->states[i].experiences > 0 ? GRRL_OK : GRRL_ERR_CORRUPT;
     }
     if (status == GRRL_OK) {
@@ -290,15 +296,21 @@ static enum grrl_status read_all(struct grrl_experience_store *store,
     return status;
 }
 
+static void empty(struct grrl_experience_store *store)
+{
+    uint64_t *index = store->index;
+    grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
+                         store->experiences_capacity);
+    store->index = index;
+}
+
 enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
                                       const struct grrl_experience_io *io)
 {
-    grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
-                         store->experiences_capacity);
+    empty(store);
     enum grrl_status status = read_all(store, io);
     if (status != GRRL_OK) {
-        grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
-                             store->experiences_capacity);
+        empty(store);
     }
     return status;
 }

@@ -1,9 +1,11 @@
 /*
  * experience_private.h (private): what the parts of the experience store share.
  *
- * Invariants: states 0 .. n_states - 1 are canonical, all different, each with a list of at least
- * one experience; experiences 0 .. n_experiences - 1 are each in the list of their state, no two of
- * one state with the same link and direction.
+ * Invariants: each state is in the bucket of each of its keys, bucket b of the table beginning at
+ * states[b].head, b below the capacity, also where no state is; states 0 .. n_states - 1 are
+ * canonical, all different, each with a list of at least one experience; experiences 0 ..
+ * n_experiences - 1 are each in the list of their state, no two of one state with the same link and
+ * direction.
  */
 #ifndef GRRL_EXPERIENCE_PRIVATE_H
 #define GRRL_EXPERIENCE_PRIVATE_H
@@ -12,27 +14,34 @@
 
 #include "grrl/experience.h"
 
-enum { GRRL_NO_STATE = -1 };
+#define GRRL_NO_STATE UINT32_MAX
 
-/* The canonical form and the hash without properties; false if undecided. */
-bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_canonical *canonical,
-                              uint32_t *shape);
+/* The tables of a store. */
+enum { GRRL_TABLE_EXACT, GRRL_TABLE_SHAPE };
 
-/* Joints of each type, GRRL_JOINT_TYPES numbers. */
-void grrl_experience_count_joints(const struct grrl_graph *graph, uint8_t *joints);
+/* What is stored of a state, but for its places in tables and lists. False if its canonical form is
+ * undecided. order may be NULL; else canonical link i is link order[i] of the graph. */
+bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experience_state *state,
+                              uint8_t *order);
 
-/* The stored state with this canonical form, or GRRL_NO_STATE. */
-int grrl_experience_find_state(const struct grrl_experience_store *store,
-                               const struct grrl_canonical *canonical);
+/* The first state with this key, the next one after `from`; GRRL_NO_STATE at the end. */
+uint32_t grrl_experience_first_in(const struct grrl_experience_store *store, int table,
+                                  uint32_t key);
+uint32_t grrl_experience_next_in(const struct grrl_experience_store *store, int table, uint32_t key,
+                                 uint32_t from);
+
+/* The stored state of the same structure and properties, or GRRL_NO_STATE. */
+uint32_t grrl_experience_find_state(const struct grrl_experience_store *store,
+                                    const struct grrl_experience_state *described);
 
 /* The experience of a state's action, or GRRL_NO_EXPERIENCE. */
-uint16_t grrl_experience_find(const struct grrl_experience_store *store, uint16_t state,
+uint32_t grrl_experience_find(const struct grrl_experience_store *store, uint32_t state,
                               uint8_t link, uint8_t direction);
 
 /* Appends, with room for it. A state must get an experience before the store is used again. */
-uint16_t grrl_experience_add_state(struct grrl_experience_store *store,
-                                   const struct grrl_canonical *canonical, uint32_t shape);
-uint16_t grrl_experience_add(struct grrl_experience_store *store, uint16_t state, uint8_t link,
+uint32_t grrl_experience_add_state(struct grrl_experience_store *store,
+                                   const struct grrl_experience_state *described);
+uint32_t grrl_experience_add(struct grrl_experience_store *store, uint32_t state, uint8_t link,
                              uint8_t direction);
 
 #endif

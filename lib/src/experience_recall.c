@@ -14,9 +14,11 @@ struct job {
     const struct grrl_experience_store *store;
     const struct grrl_graph *current;
     struct grrl_recall *recall;
-    uint32_t budget; /* left for the stored state */
+    uint32_t budget; /* left for the stored state, */
+    uint32_t steps;  /* and for the sub-structures of the recall */
 
     const struct grrl_experience_state *stored;
+    struct grrl_graph graph; /* of it */
     enum grrl_match_kind kind;
     bool forth; /* the stored state is the pattern, the current one the target */
     grrl_label mask;
@@ -29,7 +31,7 @@ struct binding {
 };
 
 /* Whether an experience of the offered closeness is closer than what the entry has. */
-static bool improves(const struct job *job, uint16_t experience,
+static bool improves(const struct job *job, uint32_t experience,
                      const struct grrl_recall_entry *entry)
 {
     if (entry->experience == GRRL_NO_EXPERIENCE) {
@@ -53,7 +55,7 @@ static bool improves(const struct job *job, uint16_t experience,
 /* Whether stored link v could be bound to current link c, as far as label and degrees tell. */
 static bool could_bind(const struct job *job, uint8_t v, uint8_t c)
 {
-    const struct grrl_graph *stored = &job->stored->graph;
+    const struct grrl_graph *stored = &job->graph;
     if (grrl_label_masked(stored->label[v], job->mask) !=
         grrl_label_masked(job->current->label[c], job->mask)) {
         return false;
@@ -74,7 +76,7 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
 {
     memset(wanted, 0, sizeof *wanted);
     bool any = false;
-    for (uint16_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
+    for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
         for (uint8_t c = 0; c < job->current->n; ++c) {
@@ -90,7 +92,7 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
 
 static void add_mapping(const struct job *job, const uint8_t *map, struct binding *found)
 {
-    uint8_t n = job->forth ? job->stored->graph.n : job->current->n;
+    uint8_t n = job->forth ? job->graph.n : job->current->n;
     for (uint8_t i = 0; i < n; ++i) {
         uint8_t v = job->forth ? i : map[i];
         uint8_t c = job->forth ? map[i] : i;
@@ -108,20 +110,26 @@ static bool covers(const struct binding *found, const struct binding *wanted, ui
     return true;
 }
 
-/* Asks for one mapping through each wanted pair that is not yet known to have one. */
-static void find_pairs(struct job *job, const struct grrl_match *all, const struct binding *wanted,
-                       struct binding *found)
+static void begin(const struct job *job, struct grrl_match *match)
 {
-    for (uint8_t v = 0; v < job->stored->graph.n; ++v) {
+    const struct grrl_graph *stored = &job->graph;
+    grrl_match_begin(match, job->kind, job->forth ? stored : job->current,
+                     job->forth ? job->current : stored, job->mask, job->budget);
+}
+
+/* Asks for one mapping through each wanted pair that is not yet known to have one. */
+static void find_pairs(struct job *job, const struct binding *wanted, struct binding *found)
+{
+    for (uint8_t v = 0; v < job->graph.n; ++v) {
         uint32_t missing = wanted->to[v];
         for (; missing != 0 && job->budget > 0; missing &= missing - 1u) {
             uint8_t c = grrl_first_bit(missing);
             if ((found->to[v] & grrl_bit(c)) != 0) {
                 continue;
             }
-            struct grrl_match match = *all;
+            struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
-            match.budget = job->budget;
+            begin(job, &match);
             grrl_match_fix(&match, job->forth ? v : c, job->forth ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK) {
                 add_mapping(job, map, found);
@@ -134,11 +142,8 @@ static void find_pairs(struct job *job, const struct grrl_match *all, const stru
 static void find_bindings(struct job *job, const struct binding *wanted, struct binding *found)
 {
     memset(found, 0, sizeof *found);
-    const struct grrl_graph *stored = &job->stored->graph;
-    struct grrl_match all;
-    grrl_match_begin(&all, job->kind, job->forth ? stored : job->current,
-                     job->forth ? job->current : stored, job->mask, job->budget);
-    struct grrl_match match = all;
+    struct grrl_match match;
+    begin(job, &match);
     for (int i = 0; i < MAPPINGS; ++i) {
         uint8_t map[GRRL_MAX_LINKS];
         enum grrl_status status = grrl_match_next(&match, map);
@@ -147,11 +152,11 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
             return;
         }
         add_mapping(job, map, found);
-        if (covers(found, wanted, stored->n)) {
+        if (covers(found, wanted, job->graph.n)) {
             return;
         }
     }
-    find_pairs(job, &all, wanted, found);
+    find_pairs(job, wanted, found);
 }
 
 /* Enters what the stored state knows, under the kind, mask and closeness of the job. */
@@ -163,7 +168,7 @@ static void consult(struct job *job)
     }
     struct binding found;
     find_bindings(job, &wanted, &found);
-    for (uint16_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
+    for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
         uint32_t links = found.to[experience->link] & wanted.to[experience->link];
@@ -207,7 +212,7 @@ static grrl_label drop_last(grrl_label places)
 /* Isomorphic without properties: ever fewer of them. */
 static void consult_relaxed(struct job *job, grrl_label current_places)
 {
-    grrl_label places = current_places | places_in_use(&job->stored->graph);
+    grrl_label places = current_places | places_in_use(&job->graph);
     job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_RELAXED};
     while (places != 0) {
         places = drop_last(places);
@@ -218,13 +223,18 @@ static void consult_relaxed(struct job *job, grrl_label current_places)
 }
 
 /* With all properties, then with none. */
-static void consult_substructure(struct job *job, grrl_label current_places, uint8_t distance)
+static void consult_substructure(struct job *job, const struct grrl_experience_state *current,
+                                 grrl_label current_places, uint8_t distance)
 {
-    grrl_label places = current_places | places_in_use(&job->stored->graph);
+    grrl_label places = current_places | places_in_use(&job->graph);
     job->offer =
         (struct grrl_recall_entry){.level = GRRL_RECALL_SUBSTRUCTURE, .distance = distance};
     job->mask = GRRL_ALL_PROPERTIES;
-    consult(job);
+    const struct grrl_signature *stored = &job->stored->signature;
+    if (job->forth ? grrl_signature_within(stored, &current->signature, false)
+                   : grrl_signature_within(&current->signature, stored, false)) {
+        consult(job);
+    }
     for (; places != 0; places = drop_last(places)) {
         ++job->offer.dropped;
     }
@@ -234,85 +244,156 @@ static void consult_substructure(struct job *job, grrl_label current_places, uin
     }
 }
 
-/* The current state as the stored ones are described. */
-struct description {
-    struct grrl_canonical canonical;
-    uint32_t shape;
-    uint8_t joints[GRRL_JOINT_TYPES];
-    grrl_label places;
-};
-
-static bool same_shape(const struct grrl_experience_state *stored,
-                       const struct description *current)
+static void take_state(struct job *job, uint32_t state, const struct grrl_recall_config *config)
 {
-    return stored->shape == current->shape && stored->graph.n == current->canonical.graph.n &&
-           memcmp(stored->joints, current->joints, sizeof current->joints) == 0;
-}
-
-/*
- * Links and joints one of the two has more, 0 if neither can be a part of the other; *forth tells
- * whether the stored state is the part. With the same counts they are isomorphic or nothing.
- */
-static unsigned part_distance(const struct grrl_experience_state *stored,
-                              const struct description *current, bool *forth)
-{
-    int more = (int)current->canonical.graph.n - (int)stored->graph.n;
-    int distance = more;
-    bool within = more >= 0;
-    bool around = more <= 0;
-    for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
-        more = (int)current->joints[type] - (int)stored->joints[type];
-        distance += more;
-        within = within && more >= 0;
-        around = around && more <= 0;
-    }
-    *forth = within;
-    if (within == around) {
-        return 0;
-    }
-    return (unsigned)(within ? distance : -distance);
+    job->stored = &job->store->states[state];
+    job->budget = config->budget;
+    grrl_experience_graph(job->stored, &job->graph);
 }
 
 static void consult_isomorphic(struct job *job, const struct grrl_recall_config *config,
-                               const struct description *current)
+                               const struct grrl_experience_state *current, grrl_label places)
 {
     job->kind = GRRL_MATCH_ISOMORPHISM;
     job->forth = true;
-    int exact = grrl_experience_find_state(job->store, &current->canonical);
+    uint32_t exact = grrl_experience_find_state(job->store, current);
     if (exact != GRRL_NO_STATE) {
-        job->stored = &job->store->states[exact];
-        job->budget = config->budget;
+        take_state(job, exact, config);
         job->mask = GRRL_ALL_PROPERTIES;
         job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
         consult(job);
     }
-    for (uint16_t i = 0; i < job->store->n_states && config->deepest >= GRRL_RECALL_RELAXED; ++i) {
-        job->stored = &job->store->states[i];
-        if (same_shape(job->stored, current)) {
-            job->budget = config->budget;
-            consult_relaxed(job, current->places);
+    if (config->deepest < GRRL_RECALL_RELAXED) {
+        return;
+    }
+    uint32_t shape = current->key[GRRL_TABLE_SHAPE];
+    uint32_t i = grrl_experience_first_in(job->store, GRRL_TABLE_SHAPE, shape);
+    for (; i != GRRL_NO_STATE;
+         i = grrl_experience_next_in(job->store, GRRL_TABLE_SHAPE, shape, i)) {
+        const struct grrl_experience_state *stored = &job->store->states[i];
+        if (stored->n == current->n &&
+            memcmp(stored->joints, current->joints, sizeof current->joints) == 0) {
+            take_state(job, i, config);
+            consult_relaxed(job, places);
         }
     }
 }
 
+/* --- sub-structures --------------------------------------------------------------------------- */
+
+/* The states closest to the current one, as far as signatures tell. */
+struct nearest {
+    unsigned n;
+    unsigned limit; /* distances from here on are not wanted */
+    uint32_t state[GRRL_RECALL_STATES];
+    uint8_t distance[GRRL_RECALL_STATES];
+};
+
+/* Makes room by letting the farthest go; no room if all are equally far. */
+static void drop_farthest(struct nearest *nearest)
+{
+    uint8_t farthest = 0;
+    for (unsigned i = 0; i < nearest->n; ++i) {
+        farthest = nearest->distance[i] > farthest ? nearest->distance[i] : farthest;
+    }
+    unsigned kept = 0;
+    for (unsigned i = 0; i < nearest->n; ++i) {
+        nearest->state[kept] = nearest->state[i];
+        nearest->distance[kept] = nearest->distance[i];
+        kept += nearest->distance[i] != farthest;
+    }
+    nearest->limit = farthest;
+    nearest->n = kept == 0 ? nearest->n : kept;
+}
+
+/* Links and joints one of the two has more; each count is one of the lowest bytes of the word. */
+static unsigned distance_between(uint64_t larger, uint64_t smaller)
+{
+    uint64_t more = larger - smaller;
+    return (unsigned)((more & 0xffu) + (more >> 8 & 0xffu) + (more >> 16 & 0xffu));
+}
+
+static uint64_t word_of(const struct grrl_experience_store *store, unsigned word, uint32_t state)
+{
+    return store->index != NULL ? store->index[(size_t)word * store->states_capacity + state]
+                                : store->states[state].signature.word[word];
+}
+
+/* Whether the counts of the shape allow one to be within the other. */
+static bool fits_within(uint64_t part, uint64_t whole)
+{
+    const uint64_t guards = UINT64_C(0x8080808080808080);
+    return (((whole | guards) - part) & guards) == guards;
+}
+
+/* With equal counts of links and joints they are isomorphic or nothing: not wanted here. */
+static void find_nearest(const struct grrl_experience_store *store,
+                         const struct grrl_signature *current, struct nearest *nearest)
+{
+    const uint64_t counts = current->word[0];
+    nearest->n = 0;
+    nearest->limit = UINT8_MAX + 1u;
+    for (uint32_t i = 0; i < store->n_states; ++i) {
+        uint64_t stored = word_of(store, 0, i);
+        bool within = fits_within(stored, counts);
+        if (!within && !fits_within(counts, stored)) {
+            continue;
+        }
+        unsigned distance =
+            within ? distance_between(counts, stored) : distance_between(stored, counts);
+        if (distance == 0 || distance >= nearest->limit) {
+            continue;
+        }
+        uint64_t paths = word_of(store, 1, i);
+        if (within ? !fits_within(paths, current->word[1])
+                   : !fits_within(current->word[1], paths)) {
+            continue;
+        }
+        if (nearest->n == GRRL_RECALL_STATES) {
+            drop_farthest(nearest);
+            if (distance >= nearest->limit) {
+                continue;
+            }
+        }
+        nearest->state[nearest->n] = i;
+        nearest->distance[nearest->n++] = (uint8_t)distance;
+    }
+}
+
+/* Whether every action has an entry. */
+static bool is_complete(const struct grrl_recall *recall)
+{
+    for (uint8_t link = 0; link < recall->n_links; ++link) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+            if (recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 /* The closest states first, so that the others need a search only for what is still open. */
 static void consult_parts(struct job *job, const struct grrl_recall_config *config,
-                          const struct description *current)
+                          const struct grrl_experience_state *current, grrl_label places)
 {
+    struct nearest nearest;
+    find_nearest(job->store, &current->signature, &nearest);
     job->kind = GRRL_MATCH_MONOMORPHISM;
-    unsigned distance = 0;
-    unsigned next = 1;
-    while (next > distance) {
-        distance = next;
-        for (uint16_t i = 0; i < job->store->n_states; ++i) {
-            job->stored = &job->store->states[i];
-            unsigned d = part_distance(job->stored, current, &job->forth);
-            if (d == distance) {
-                job->budget = config->budget;
-                consult_substructure(job, current->places, (uint8_t)d);
-            } else if (d > distance && (next == distance || d < next)) {
-                next = d;
+    unsigned left = nearest.n;
+    job->steps = GRRL_RECALL_STEPS;
+    for (unsigned distance = 1; left > 0 && !is_complete(job->recall); ++distance) {
+        for (unsigned k = 0; k < nearest.n; ++k) {
+            if (nearest.distance[k] != distance) {
+                continue;
             }
+            --left;
+            take_state(job, nearest.state[k], config);
+            job->budget = job->budget < job->steps ? job->budget : job->steps;
+            const uint32_t granted = job->budget;
+            job->forth = fits_within(job->stored->signature.word[0], current->signature.word[0]);
+            consult_substructure(job, current, places, (uint8_t)distance);
+            job->steps -= granted - job->budget;
         }
     }
 }
@@ -328,16 +409,14 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
                 (struct grrl_recall_entry){.experience = GRRL_NO_EXPERIENCE};
         }
     }
-    struct description current;
-    if (store->n_states == 0 ||
-        !grrl_experience_describe(state, &current.canonical, &current.shape)) {
+    struct grrl_experience_state current;
+    if (store->n_states == 0 || !grrl_experience_describe(state, &current, NULL)) {
         return;
     }
-    grrl_experience_count_joints(state, current.joints);
-    current.places = places_in_use(state);
+    grrl_label places = places_in_use(state);
     struct job job = {.store = store, .current = state, .recall = recall};
-    consult_isomorphic(&job, config, &current);
+    consult_isomorphic(&job, config, &current, places);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
-        consult_parts(&job, config, &current);
+        consult_parts(&job, config, &current, places);
     }
 }

@@ -29,9 +29,9 @@ void grrl_learner_config_default(struct grrl_learner_config *config)
 
 enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    const struct grrl_learner_config *config,
-                                   struct grrl_experience_state *states, uint16_t states_capacity,
+                                   struct grrl_experience_state *states, uint32_t states_capacity,
                                    struct grrl_experience *experiences,
-                                   uint16_t experiences_capacity)
+                                   uint32_t experiences_capacity)
 {
     if (states_capacity == 0 || experiences_capacity == 0 ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
@@ -203,7 +203,7 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
     lesson->target = limit(lesson->target); /* a discount next to 1 adds up without end */
     if (policy->kind != GRRL_POLICY_RANDOM) {
         const struct grrl_choice *choice = &learner->last_choice;
-        uint16_t index;
+        uint32_t index;
         if (grrl_experience_update(&learner->store, &learner->acted_on, choice->link,
                                    choice->direction, lesson->target, policy->alpha,
                                    &index) == GRRL_OK) {

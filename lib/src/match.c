@@ -3,243 +3,202 @@
 #include <assert.h>
 #include <string.h>
 
-#include "bits.h"
+#include "match_private.h"
 
 enum { FINISHED = -1 };
 
-/* As grrl_graph_neighbours, without a call in the innermost loops. */
-static inline uint32_t neighbours_of(const struct grrl_graph *graph, uint8_t vertex)
+static bool same_counts(const struct grrl_match_plan *a, const struct grrl_match_plan *b)
 {
-    return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
+    return a->graph->n == b->graph->n && a->joints[GRRL_REVOLUTE] == b->joints[GRRL_REVOLUTE] &&
+           a->joints[GRRL_PRISMATIC] == b->joints[GRRL_PRISMATIC];
 }
 
-static inline unsigned degree(const struct grrl_graph *graph, int type, uint8_t vertex)
+enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
+                                         const struct grrl_match_plan *pattern,
+                                         const struct grrl_match_plan *target)
 {
-    return grrl_bit_count(graph->joined[type][vertex]);
-}
-
-/* No mapping can exist: there are too few targets, or another number where it must be the same. */
-static bool counts_differ(const struct grrl_match *match)
-{
-    uint8_t n = match->pattern->n;
-    if (match->kind == GRRL_MATCH_ISOMORPHISM)
-        return n != match->target->n;
-    return n > match->target->n;
+    return same_counts(pattern, target) ? GRRL_MATCH_ISOMORPHISM : kind;
 }
 
 /*
- * Which targets have the degrees of a pattern vertex: of each type as many joints for isomorphism,
- * at least as many for monomorphism. by_degree[t][d] is first made the set of targets of degree d
- * (isomorphism) or of degree d and more (monomorphism).
+ * The targets worth trying at this depth: allowed, unused, joined to the images of all mapped
+ * neighbours by joints of the right types.
  */
-static void restrict_degrees(struct grrl_match *match)
+static inline uint32_t open_depth(const struct grrl_match *match, int depth, uint32_t used)
 {
-    uint32_t by_degree[GRRL_JOINT_TYPES][GRRL_MAX_LINKS];
-    memset(by_degree, 0, sizeof by_degree);
-    bool exact = match->kind == GRRL_MATCH_ISOMORPHISM;
+    const struct grrl_match_step *step = &match->order->step[depth];
+    const struct grrl_graph *target = match->target->graph;
+    uint32_t candidates = match->allowed[step->vertex] & ~used;
+    if (step->parent != GRRL_UNMAPPED)
+        candidates &= target->joined[step->type][match->image[step->parent]];
+    if (step->ties == 0)
+        return candidates;
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        for (uint8_t v = 0; v < match->target->n; v++) {
-            unsigned d = degree(match->target, type, v);
-            by_degree[type][d] |= grrl_bit(v);
-            while (!exact && d > 0)
-                by_degree[type][--d] |= grrl_bit(v);
-        }
-        for (uint8_t v = 0; v < match->pattern->n; v++)
-            match->compatible[v] &= by_degree[type][degree(match->pattern, type, v)];
+        uint32_t earlier = match->pattern->graph->joined[type][step->vertex];
+        for (earlier &= match->order->earlier[depth]; earlier != 0; earlier &= earlier - 1u)
+            candidates &= target->joined[type][match->image[grrl_first_bit(earlier)]];
     }
-}
-
-/* Which targets have the label of a pattern vertex; there are few different labels, so that each
- * is compared with the targets once. */
-static void restrict_labels(struct grrl_match *match, grrl_label mask)
-{
-    grrl_label known[GRRL_MAX_LINKS];
-    uint32_t owners[GRRL_MAX_LINKS];
-    uint8_t n_known = 0;
-    for (uint8_t v = 0; v < match->pattern->n; v++) {
-        grrl_label label = grrl_label_masked(match->pattern->label[v], mask);
-        uint8_t k = 0;
-        while (k < n_known && known[k] != label)
-            k++;
-        if (k == n_known) {
-            known[k] = label;
-            owners[k] = 0;
-            for (uint8_t t = 0; t < match->target->n; t++)
-                if (grrl_label_masked(match->target->label[t], mask) == label)
-                    owners[k] |= grrl_bit(t);
-            n_known++;
-        }
-        match->compatible[v] = owners[k];
-    }
+    return candidates;
 }
 
 /*
- * Orders the pattern: each vertex a neighbour of earlier ones where there is one, of several of
- * them if possible, then the fewest compatible targets, then the most joints.
+ * The rules for one more pair, beyond what the candidates guarantee: the same label, and for
+ * isomorphism the same colour, for monomorphism nothing that the target has less of. An isomorphism
+ * needs no look for joints that only the target has: both have the same number of joints.
  */
-static void order_pattern(struct grrl_match *match)
+static inline bool is_feasible(const struct grrl_match_plan *pattern, uint8_t vertex,
+                               const struct grrl_match_plan *target, uint8_t image, bool exact)
 {
-    const struct grrl_graph *pattern = match->pattern;
-    uint32_t rank[GRRL_MAX_LINKS]; /* smaller comes first; the vertex is in the lowest byte, so that
-                                      the smallest is found without a branch */
-    for (uint8_t v = 0; v < pattern->n; v++)
-        rank[v] = grrl_bit_count(match->compatible[v]) << 16 |
-                  (32u - grrl_bit_count(neighbours_of(pattern, v))) << 8 | v;
-    uint32_t placed = 0;
-    uint32_t frontier = 0; /* neighbours of placed vertices, */
-    uint32_t tied = 0;     /* and of them those of two or more */
-    for (uint8_t depth = 0; depth < pattern->n; depth++) {
-        uint32_t choices = tied != 0 ? tied : frontier;
-        if (choices == 0)
-            choices = grrl_bits_below(pattern->n) & ~placed;
-        uint32_t smallest = UINT32_MAX;
-        for (; choices != 0; choices &= choices - 1u) {
-            uint32_t other = rank[grrl_first_bit(choices)];
-            smallest = other < smallest ? other : smallest;
-        }
-        uint8_t best = (uint8_t)(smallest & 0xffu);
-        uint32_t neighbours = neighbours_of(pattern, best);
-        match->order[depth] = best;
-        match->earlier[depth] = placed;
-        uint32_t again = neighbours & frontier; /* none on a tree */
-        match->terminal[depth] = again == 0 ? 0 : (uint8_t)grrl_bit_count(again);
-        placed |= grrl_bit(best);
-        tied = (tied | again) & ~placed;
-        frontier = (frontier | neighbours) & ~placed;
-    }
+    uint32_t left = (target->growing[image] | GRRL_MATCH_GUARDS) - pattern->growing[vertex];
+    bool fits = exact ? pattern->colour[vertex] == target->colour[image]
+                      : (left & GRRL_MATCH_GUARDS) == GRRL_MATCH_GUARDS;
+    return fits && pattern->label[vertex] == target->label[image];
 }
 
-/* The targets worth trying at this depth: compatible, unused, joined to the images of all mapped
- * neighbours by joints of the right types. */
-static void open_depth(struct grrl_match *match, int depth)
+/* Goes on from where the match stands to the next mapping, with the loop's state in registers. */
+static inline enum grrl_status search(struct grrl_match *match, bool exact)
 {
-    uint8_t vertex = match->order[depth];
-    uint32_t candidates = match->compatible[vertex] & ~match->used;
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        uint32_t neighbours = match->pattern->joined[type][vertex] & match->earlier[depth];
-        uint32_t images = 0;
-        for (; neighbours != 0; neighbours &= neighbours - 1u) {
-            uint8_t image = match->image[grrl_first_bit(neighbours)];
-            images |= grrl_bit(image);
-            candidates &= match->target->joined[type][image];
+    const struct grrl_match_plan *pattern = match->pattern;
+    const struct grrl_match_plan *target = match->target;
+    const struct grrl_match_step *step = match->order->step;
+    int last = pattern->graph->n - 1;
+    int depth = match->depth;
+    uint32_t used = match->used;
+    uint32_t budget = match->budget;
+    uint32_t candidates = match->candidates[depth];
+    enum grrl_status status;
+    for (;;) {
+        if (candidates == 0) {
+            if (depth == 0) {
+                depth = FINISHED;
+                status = GRRL_ERR_NONE;
+                break;
+            }
+            depth--;
+            used &= ~grrl_bit(match->image[step[depth].vertex]);
+            candidates = match->candidates[depth];
+            continue;
         }
-        match->wanted[type][depth] = images;
+        if (budget == 0) {
+            match->candidates[depth] = candidates;
+            status = GRRL_ERR_UNDECIDED;
+            break;
+        }
+        budget--;
+        uint8_t image = grrl_first_bit(candidates);
+        uint8_t vertex = step[depth].vertex;
+        candidates &= candidates - 1u;
+        if (!is_feasible(pattern, vertex, target, image, exact))
+            continue;
+        match->image[vertex] = image;
+        match->candidates[depth] = candidates;
+        if (depth == last) { /* the next call goes on with the other candidates here */
+            status = GRRL_OK;
+            break;
+        }
+        used |= grrl_bit(image);
+        depth++;
+        candidates = open_depth(match, depth, used);
     }
-    match->candidates[depth] = candidates;
+    match->depth = depth;
+    match->used = used;
+    match->budget = budget;
+    return status;
+}
+
+static void start(struct grrl_match *match)
+{
+    match->depth = 0;
+    match->used = 0;
+    if (match->pattern->graph->n > 0)
+        match->candidates[0] = open_depth(match, 0, 0);
 }
 
 void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
                       const struct grrl_graph *pattern, const struct grrl_graph *target,
                       grrl_label mask, uint32_t budget)
 {
-    match->pattern = pattern;
-    match->target = target;
-    match->kind = kind;
+    struct grrl_match_plan *own = match->own;
+    match->pattern = &own[0];
+    match->target = &own[1];
+    match->order = &own[0];
     match->budget = budget;
     match->depth = FINISHED;
-    match->used = 0;
-    if (counts_differ(match))
+    own[0].graph = pattern;
+    own[1].graph = target;
+    if (pattern->n > target->n || (kind == GRRL_MATCH_ISOMORPHISM && pattern->n < target->n))
         return;
-    restrict_labels(match, mask);
-    restrict_degrees(match);
-    for (uint8_t v = 0; v < pattern->n; v++)
-        if (match->compatible[v] == 0)
+    grrl_match_glance(&own[0], pattern, mask);
+    grrl_match_glance(&own[1], target, mask);
+    match->kind = grrl_match_kind_for(kind, &own[0], &own[1]);
+    if (match->kind == GRRL_MATCH_ISOMORPHISM) {
+        if (!same_counts(&own[0], &own[1]))
             return;
-    match->depth = 0;
-    if (pattern->n == 0)
+        grrl_match_colour(&own[0]);
+        grrl_match_colour(&own[1]);
+        if (own[0].hash != own[1].hash)
+            return;
+    } else if (own[0].joints[GRRL_REVOLUTE] > own[1].joints[GRRL_REVOLUTE] ||
+               own[0].joints[GRRL_PRISMATIC] > own[1].joints[GRRL_PRISMATIC]) {
         return;
-    order_pattern(match);
-    match->reached[0] = 0;
-    open_depth(match, 0);
+    }
+    if (pattern->n > 0)
+        grrl_match_order_glanced(&own[0], match->kind, &own[1]);
+    for (uint8_t v = 0; v < pattern->n; v++)
+        match->allowed[v] = grrl_bits_below(target->n);
+    start(match);
+}
+
+void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,
+                              const struct grrl_match_plan *pattern,
+                              const struct grrl_match_plan *target, uint32_t budget)
+{
+    match->pattern = pattern;
+    match->target = target;
+    match->order = pattern;
+    match->kind = grrl_match_kind_for(kind, pattern, target);
+    match->budget = budget;
+    match->depth = FINISHED;
+    if (!grrl_match_planned_may_fit(match->kind, pattern, target))
+        return;
+    uint8_t n = pattern->graph->n;
+    if (match->kind == GRRL_MATCH_ISOMORPHISM)
+        for (uint8_t v = 0; v < n; v++)
+            match->allowed[v] = target->cell[pattern->rank[v]];
+    else
+        for (uint8_t v = 0; v < n; v++)
+            match->allowed[v] = grrl_bits_below(target->graph->n);
+    start(match);
 }
 
 void grrl_match_fix(struct grrl_match *match, uint8_t pattern_vertex, uint8_t target_vertex)
 {
-    assert(pattern_vertex < match->pattern->n && target_vertex < match->target->n);
+    assert(pattern_vertex < match->pattern->graph->n && target_vertex < match->target->graph->n);
     if (match->depth == FINISHED)
         return;
-    match->compatible[pattern_vertex] &= grrl_bit(target_vertex);
-    if (match->compatible[pattern_vertex] == 0) {
-        match->depth = FINISHED;
-        return;
-    }
-    order_pattern(match);
-    open_depth(match, 0);
-}
-
-/*
- * The rules of VF2 for one more pair, beyond what the candidates guarantee. Isomorphism: the target
- * has no joints to images that the pattern lacks. Monomorphism: enough joints remain for those the
- * pattern still has. Both: as many (at least as many) unmapped neighbours that touch mapped ones.
- */
-static bool is_feasible(const struct grrl_match *match, int depth, uint8_t target)
-{
-    uint8_t vertex = match->order[depth];
-    bool exact = match->kind == GRRL_MATCH_ISOMORPHISM;
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        uint32_t joined = match->target->joined[type][target];
-        if (exact) {
-            if ((joined & match->used) != match->wanted[type][depth])
-                return false;
-            continue;
-        }
-        uint32_t remaining = match->pattern->joined[type][vertex] & ~match->earlier[depth];
-        if (remaining != 0 && grrl_bit_count(joined & ~match->used) < grrl_bit_count(remaining))
-            return false;
-    }
-    uint32_t terminal = neighbours_of(match->target, target) & match->reached[depth];
-    unsigned needed = match->terminal[depth];
-    if (exact)
-        return grrl_bit_count(terminal & ~match->used) == needed;
-    return needed == 0 || grrl_bit_count(terminal & ~match->used) >= needed;
-}
-
-static enum grrl_status give_mapping(const struct grrl_match *match, uint8_t *map)
-{
-    memset(map, GRRL_UNMAPPED, GRRL_MAX_LINKS);
-    memcpy(map, match->image, match->pattern->n);
-    return GRRL_OK;
+    match->allowed[pattern_vertex] &= grrl_bit(target_vertex);
+    match->own[0].graph = match->pattern->graph;
+    grrl_match_order_from(&match->own[0], pattern_vertex);
+    match->order = &match->own[0];
+    start(match);
 }
 
 enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
 {
-    int depth = match->depth;
-    int last = match->pattern->n - 1;
-    if (depth == FINISHED)
+    uint8_t n = match->pattern->graph->n;
+    if (match->depth == FINISHED)
         return GRRL_ERR_NONE;
-    if (last < 0) {
+    if (n == 0) {
         match->depth = FINISHED; /* the empty mapping, once */
-        return give_mapping(match, map);
+    } else {
+        enum grrl_status status =
+            match->kind == GRRL_MATCH_ISOMORPHISM ? search(match, true) : search(match, false);
+        if (status != GRRL_OK)
+            return status;
     }
-    for (;;) {
-        if (match->candidates[depth] == 0) {
-            if (depth == 0) {
-                match->depth = FINISHED;
-                return GRRL_ERR_NONE;
-            }
-            depth--;
-            match->used &= ~grrl_bit(match->image[match->order[depth]]);
-            continue;
-        }
-        if (match->budget == 0) {
-            match->depth = depth;
-            return GRRL_ERR_UNDECIDED;
-        }
-        match->budget--;
-        uint8_t target = grrl_first_bit(match->candidates[depth]);
-        match->candidates[depth] &= match->candidates[depth] - 1u;
-        if (!is_feasible(match, depth, target))
-            continue;
-        match->image[match->order[depth]] = target;
-        if (depth == last) {
-            match->depth = depth; /* the next call goes on with the other candidates here */
-            return give_mapping(match, map);
-        }
-        match->used |= grrl_bit(target);
-        match->reached[depth + 1] = match->reached[depth] | neighbours_of(match->target, target);
-        depth++;
-        open_depth(match, depth);
-    }
+    memset(map, GRRL_UNMAPPED, GRRL_MAX_LINKS);
+    memcpy(map, match->image, n);
+    return GRRL_OK;
 }
 
 /* Joins the orbits of i and map[i] for every i, keeping the smallest vertex as the name. */
@@ -249,7 +208,7 @@ static void merge_orbits(uint8_t *orbit, const uint8_t *map, uint8_t n)
         uint8_t a = orbit[i];
         uint8_t b = orbit[map[i]];
         uint8_t kept = a < b ? a : b;
-        for (uint8_t k = 0; k < n; k++)
+        for (uint8_t k = 0; a != b && k < n; k++)
             if (orbit[k] == a || orbit[k] == b)
                 orbit[k] = kept;
     }
@@ -259,17 +218,20 @@ enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label ma
                                    uint8_t *orbit)
 {
     enum grrl_status result = GRRL_OK;
-    struct grrl_match all;
-    grrl_match_begin(&all, GRRL_MATCH_ISOMORPHISM, graph, graph, mask, budget);
+    struct grrl_match_plan plan;
+    grrl_match_plan(&plan, graph, mask);
     for (uint8_t i = 0; i < graph->n; i++)
         orbit[i] = i;
     for (uint8_t i = 1; i < graph->n; i++) {
-        for (uint8_t j = 0; j < i && orbit[i] == i; j++) {
+        uint32_t alike = plan.cell[plan.rank[i]] & (grrl_bit(i) - 1u);
+        for (; alike != 0 && orbit[i] == i; alike &= alike - 1u) {
+            uint8_t j = grrl_first_bit(alike);
             if (orbit[j] != j)
                 continue; /* the smallest of its orbit stands for it */
-            struct grrl_match match = all;
-            grrl_match_fix(&match, j, i);
+            struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
+            grrl_match_begin_planned(&match, GRRL_MATCH_ISOMORPHISM, &plan, &plan, budget);
+            grrl_match_fix(&match, j, i);
             enum grrl_status status = grrl_match_next(&match, map);
             if (status == GRRL_OK)
                 merge_orbits(orbit, map, graph->n);

@@ -8,6 +8,8 @@ enum {
     JUMPS_UNTIL_NEW = 5   /* a point that stays away this long is another feature */
 };
 
+#define REST_SIGMAS 6.0f /* points of one place at rest lie this near their mean */
+
 void grrl_perception_config_default(struct grrl_perception_config *config)
 {
     *config = (struct grrl_perception_config){
@@ -86,7 +88,8 @@ static void forget_history(struct grrl_perception *p, uint16_t slot)
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         p->keyframe[k].weight[slot] = 0;
     }
-    p->window.n[slot] = 0;
+    p->window.heap[0][slot].n = 0;
+    p->window.heap[1][slot].n = 0;
     p->body_of[slot] = GRRL_FEATURE_NONE;
     p->blob_of[slot] = 0;
     p->jumps[slot] = 0;
@@ -100,7 +103,7 @@ static bool slot_is_stale(const struct grrl_perception *p, uint16_t slot)
             return false;
         }
     }
-    return p->window.n[slot] == 0 && p->last_frame[slot] + 1 < p->counts.frames;
+    return p->window.heap[0][slot].n == 0 && p->last_frame[slot] + 1 < p->counts.frames;
 }
 
 static void rebuild_hash(struct grrl_perception *p)
@@ -156,7 +159,7 @@ static bool accept_point(struct grrl_perception *p, uint16_t slot, bool is_new,
 {
     if (!is_new) {
         float gap = (float)(p->counts.frames - p->last_frame[slot]);
-        float reach = p->config.jump_m * (gap < 4.0f ? gap : 4.0f);
+        float reach = p->config.jump_m * (gap < 2.0f ? gap : 2.0f);
         if (grrl_vec2_length(grrl_vec2_sub(point, p->last[slot])) > reach) {
             p->counts.outliers++;
             if (++p->jumps[slot] < JUMPS_UNTIL_NEW) {
@@ -178,14 +181,45 @@ static void window_clear(struct grrl_perception *p)
     memset(&p->window, 0, sizeof p->window);
 }
 
-static bool window_mean(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 *mean)
+static struct grrl_vec2 mean_of(const struct grrl_perception_sum *sum)
 {
-    if (p->window.n[slot] == 0) {
-        return false;
+    float scale = 1.0f / (float)sum->n;
+    return (struct grrl_vec2){sum->x * scale, sum->y * scale};
+}
+
+/* The larger heap: how many points, and their mean. */
+static uint8_t window_mean(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 *mean)
+{
+    const struct grrl_perception_sum *a = &p->window.heap[0][slot];
+    const struct grrl_perception_sum *b = &p->window.heap[1][slot];
+    const struct grrl_perception_sum *larger = b->n > a->n ? b : a;
+    if (larger->n > 0) {
+        *mean = mean_of(larger);
     }
-    float scale = 1.0f / (float)p->window.n[slot];
-    *mean = (struct grrl_vec2){p->window.x[slot] * scale, p->window.y[slot] * scale};
-    return true;
+    return larger->n;
+}
+
+/*
+ * Adds a point to the heap it lies near, so that one point far off does not draw the mean after it.
+ * What lies near neither heap replaces the second while that is a single point.
+ */
+static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_vec2 point)
+{
+    float reach = p->moving ? p->config.jump_m : REST_SIGMAS * p->config.noise_m;
+    for (int h = 0; h < 2; h++) {
+        struct grrl_perception_sum *sum = &p->window.heap[h][slot];
+        bool near = sum->n > 0 && grrl_distance2(point, mean_of(sum)) < reach * reach;
+        if (near) {
+            sum->x += point.x;
+            sum->y += point.y;
+            sum->n++;
+            return;
+        }
+        if (sum->n == 0 || (h == 1 && sum->n == 1)) {
+            *sum = (struct grrl_perception_sum){point.x, point.y, 1};
+            return;
+        }
+    }
 }
 
 /* How many features of the window lie farther than `distance` from a keyframe. */
@@ -195,7 +229,7 @@ static unsigned moved_since(const struct grrl_perception *p,
     unsigned moved = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
-        if (key->weight[i] > 0 && window_mean(p, i, &mean) &&
+        if (key->weight[i] > 0 && window_mean(p, i, &mean) > 0 &&
             grrl_vec2_length(grrl_vec2_sub(mean, key->point[i])) > distance) {
             moved++;
         }
@@ -242,9 +276,7 @@ static void store_window(struct grrl_perception *p, struct grrl_perception_keyfr
     memset(key, 0, sizeof *key);
     key->at_rest = at_rest;
     for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (window_mean(p, i, &key->point[i])) {
-            key->weight[i] = p->window.n[i];
-        }
+        key->weight[i] = window_mean(p, i, &key->point[i]);
     }
 }
 
@@ -270,11 +302,11 @@ static bool join_rest(struct grrl_perception *p)
     }
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
-        if (!window_mean(p, i, &mean)) {
+        float a = (float)key->weight[i];
+        float b = (float)window_mean(p, i, &mean);
+        if (!(b > 0.0f)) {
             continue;
         }
-        float a = (float)key->weight[i];
-        float b = (float)p->window.n[i];
         key->point[i] = grrl_vec2_scale(
             grrl_vec2_add(grrl_vec2_scale(key->point[i], a), grrl_vec2_scale(mean, b)),
             1.0f / (a + b));
@@ -315,9 +347,7 @@ static void window_add(struct grrl_perception *p, const struct grrl_frame *frame
             continue;
         }
         if (accept_point(p, slot, is_new, point)) {
-            p->window.x[slot] += point.x;
-            p->window.y[slot] += point.y;
-            p->window.n[slot]++;
+            window_take(p, slot, point);
         }
     }
     p->window.frames++;
@@ -338,7 +368,8 @@ static bool still_sliding(const struct grrl_perception *p, const struct grrl_fra
             h = (h + 1) % size;
         }
         struct grrl_vec2 mean;
-        if (p->slot_of_hash[h] != 0 && window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean)) {
+        if (p->slot_of_hash[h] != 0 &&
+            window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean) > 0) {
             struct grrl_vec2 d = {frame->x_m[i] - mean.x, frame->y_m[i] - mean.y};
             seen++;
             away += grrl_vec2_length(d) > 6.0f * p->config.noise_m ? 1u : 0u;

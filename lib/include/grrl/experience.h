@@ -6,7 +6,10 @@
  * their orbit, so that isomorphic states and symmetric actions share one entry.
  *
  * Memory is the caller's: an array of states and an array of experiences, both filled from the
- * front without gaps. Used means updated, or touched because a decision rests on it. When the
+ * front without gaps, from one entry on a microcontroller to millions on a host in the same code;
+ * and, for thousands of states or more, an index that keeps together what every recall looks at.
+ * A state is found by a hash table whose heads live in the states themselves.
+ * Used means updated, or touched because a decision rests on it. When the
  * experiences are full, the one least recently used makes room, and a state goes with its last
  * experience; when the states are full, the one whose experiences were all used longest ago makes
  * room, with all of them. The last of an array moves into a gap, so that an eviction may change the
@@ -29,20 +32,28 @@ struct grrl_q {
     uint32_t n; /* targets met */
 };
 
+/* Hash tables of states: by canonical form, by canonical form without properties. */
+enum { GRRL_EXPERIENCE_TABLES = 2 };
+
+/* At most 512 bytes for 32 links and 64 joints, with its share of the index. */
 struct grrl_experience_state {
     /* private */
-    uint32_t hash;                    /* of graph, all properties */
-    uint32_t shape;                   /* hash without properties */
-    uint16_t experiences;             /* that refer to this state, at least one */
-    uint16_t first;                   /* of them */
+    uint32_t head[GRRL_EXPERIENCE_TABLES];  /* first state of the bucket with this state's number */
+    uint32_t chain[GRRL_EXPERIENCE_TABLES]; /* next state of the bucket this state is in */
+    uint32_t key[GRRL_EXPERIENCE_TABLES];   /* hash of the graph, all properties or none */
+    uint32_t experiences;                   /* that refer to this state, at least one */
+    uint32_t first;                         /* of them */
+    struct grrl_signature signature;
+    uint8_t n;                        /* links */
     uint8_t joints[GRRL_JOINT_TYPES]; /* of each type */
-    struct grrl_graph graph;          /* canonical */
+    uint16_t edge[GRRL_MAX_JOINTS];   /* canonical: type, link and lower link, 5 bits a link */
+    grrl_label label[GRRL_MAX_LINKS];
 };
 
 struct grrl_experience {
     /* private */
-    uint16_t state;
-    uint16_t next; /* of the same state, or GRRL_NO_EXPERIENCE */
+    uint32_t state;
+    uint32_t next; /* of the same state, or GRRL_NO_EXPERIENCE */
     uint8_t link;  /* in the state's canonical graph, smallest of its orbit */
     uint8_t direction;
     uint32_t used_at; /* store clock */
@@ -53,13 +64,14 @@ struct grrl_experience_store {
     /* private */
     struct grrl_experience_state *states;
     struct grrl_experience *experiences;
-    uint16_t states_capacity;
-    uint16_t experiences_capacity;
+    uint64_t *index; /* or NULL; word w of the signature of state s at w * states_capacity + s */
+    uint32_t states_capacity;
+    uint32_t experiences_capacity;
     uint32_t clock;
     /* readable */
-    uint16_t n_states;
-    uint16_t n_experiences;
-    uint16_t high_water; /* most experiences at a time */
+    uint32_t n_states;
+    uint32_t n_experiences;
+    uint32_t high_water; /* most experiences at a time */
     uint32_t evictions;
 };
 
@@ -70,14 +82,14 @@ enum grrl_recall_level {
     GRRL_RECALL_SUBSTRUCTURE /* one is a sub-structure of the other */
 };
 
-enum { GRRL_NO_EXPERIENCE = 0xffff };
+#define GRRL_NO_EXPERIENCE UINT32_MAX
 
 /* Far beyond any sum of rewards, and small enough that no statistic overflows. */
 #define GRRL_MAX_TARGET 1.0e6f
 
 /* What is known of one action of the current state. */
 struct grrl_recall_entry {
-    uint16_t experience; /* index, or GRRL_NO_EXPERIENCE */
+    uint32_t experience; /* index, or GRRL_NO_EXPERIENCE */
     uint8_t level;       /* enum grrl_recall_level */
     uint8_t distance;    /* links and joints that only one of the two has */
     uint8_t dropped;     /* properties dropped, counted from the last place in use */
@@ -89,6 +101,17 @@ struct grrl_recall {
     uint8_t n_links;
     struct grrl_recall_entry entry[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
 };
+
+/* States that one recall may search for sub-structures; five bytes of stack each. */
+#ifndef GRRL_RECALL_STATES
+#define GRRL_RECALL_STATES 512
+#endif
+
+/* Search steps that one recall may spend on sub-structures, over all states: a bound of some
+ * milliseconds on a PC. What is left out is the farthest. */
+#ifndef GRRL_RECALL_STEPS
+#define GRRL_RECALL_STEPS 500000
+#endif
 
 /* How far retrieval may reach. */
 struct grrl_recall_config {
@@ -103,10 +126,19 @@ struct grrl_experience_io {
     int (*read)(void *context, void *bytes, size_t size);
 };
 
-/* Both capacities at least 1, at most 65535. */
+/* Both capacities at least 1 and below GRRL_NO_EXPERIENCE. Without an index. */
 void grrl_experience_init(struct grrl_experience_store *store, struct grrl_experience_state *states,
-                          uint16_t states_capacity, struct grrl_experience *experiences,
-                          uint16_t experiences_capacity);
+                          uint32_t states_capacity, struct grrl_experience *experiences,
+                          uint32_t experiences_capacity);
+
+/*
+ * Gives the store an index: states_capacity times GRRL_SIGNATURE_WORDS numbers (40 bytes a state).
+ * What is recalled stays the same; among 100,000 states it costs a tenth. At any time.
+ */
+void grrl_experience_use_index(struct grrl_experience_store *store, uint64_t *index);
+
+/* The structure of a stored state, in canonical form. */
+void grrl_experience_graph(const struct grrl_experience_state *state, struct grrl_graph *graph);
 
 /*
  * For each action of the state the closest experience: exact matches first, then properties dropped
@@ -115,8 +147,13 @@ void grrl_experience_init(struct grrl_experience_store *store, struct grrl_exper
  * that agree in none; ties go to the entry with more targets met, then to the lower index. All
  * links some mapping binds to the stored one count; an experience whose stored link no mapping
  * binds is no match, nor is what a search left undecided. Nothing is known of a state without a
- * canonical form. Cost: at most budget search steps a stored state; states that cannot match, or
- * could only repeat what a closer one said, are not searched.
+ * canonical form.
+ *
+ * Cost: exact and relaxed states are found by hash, whatever the number of states. For
+ * sub-structures the signatures of all states are compared (some nanoseconds each, less with an
+ * index), then at most GRRL_RECALL_STATES states are searched, the closest first and of equally
+ * close ones those with lower indices, budget steps each; none once every action has an entry that
+ * only a closer state could replace.
  */
 void grrl_experience_recall(const struct grrl_experience_store *store,
                             const struct grrl_graph *state, const struct grrl_recall_config *config,
@@ -132,16 +169,16 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
 GRRL_MUST_USE enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
                                                       const struct grrl_graph *state, uint8_t link,
                                                       uint8_t direction, float target, float alpha,
-                                                      uint16_t *index);
+                                                      uint32_t *index);
 
 /* Marks an experience as used now. */
-void grrl_experience_touch(struct grrl_experience_store *store, uint16_t index);
+void grrl_experience_touch(struct grrl_experience_store *store, uint32_t index);
 
 /*
  * The store as bytes, little-endian whatever the machine. A header: magic "GRRLexp" and zero,
- * version (2 bytes), GRRL_MAX_PROPERTIES (1), GRRL_DIRECTIONS (1), states (2), experiences (2),
+ * version (2 bytes), GRRL_MAX_PROPERTIES (1), GRRL_DIRECTIONS (1), states (4), experiences (4),
  * clock (4). A state: links (1), then for each link its label (8) and its neighbours, revolute (4)
- * and prismatic (4). An experience: state (2), link (1), direction (1), used at (4), value (4),
+ * and prismatic (4). An experience: state (4), link (1), direction (1), used at (4), value (4),
  * mean (4), deviations (4), n (4). A CRC-32 (4) follows the header and each record; it runs on from
  * the one before, so that records cannot be exchanged either. Saving what was loaded gives the same
  * bytes. GRRL_ERR_IO.

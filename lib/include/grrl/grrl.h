@@ -9,6 +9,7 @@
 #include "grrl/canonical.h"
 #include "grrl/graph.h"
 #include "grrl/match.h"
+#include "grrl/signature.h"
 #include "grrl/term.h"
 /* the world */
 #include "grrl/geometry.h"

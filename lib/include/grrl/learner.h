@@ -42,7 +42,7 @@ struct grrl_decision {
 struct grrl_lesson {
     float reward;        /* links and joints newly revealed, plus the trial's reward at its end */
     float target;        /* r + gamma max Q(s', a') */
-    uint16_t experience; /* the entry updated; GRRL_NO_EXPERIENCE: with the random policy, or when
+    uint32_t experience; /* the entry updated; GRRL_NO_EXPERIENCE: with the random policy, or when
                             the state is too symmetric to have a canonical form in the budget */
 };
 
@@ -68,8 +68,8 @@ void grrl_learner_config_default(struct grrl_learner_config *config);
 /* The memory for experiences is the caller's, as in grrl_experience_init. GRRL_ERR_ARGUMENT. */
 GRRL_MUST_USE enum grrl_status
 grrl_learner_init(struct grrl_learner *learner, const struct grrl_learner_config *config,
-                  struct grrl_experience_state *states, uint16_t states_capacity,
-                  struct grrl_experience *experiences, uint16_t experiences_capacity);
+                  struct grrl_experience_state *states, uint32_t states_capacity,
+                  struct grrl_experience *experiences, uint32_t experiences_capacity);
 
 /* Starts with a new object or a new pose; the random numbers start from (seed, trial). Ends an
  * unfinished trial as grrl_learner_abandon_trial.

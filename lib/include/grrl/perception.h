@@ -105,11 +105,16 @@ struct grrl_perception_counts {
     uint16_t keyframes_high; /* most keyframes at a time */
 };
 
-/* private: positions being averaged into a keyframe */
+/* private: points being averaged */
+struct grrl_perception_sum {
+    float x;
+    float y;
+    uint8_t n;
+};
+
+/* private: each feature's points of a window, in two heaps: an outlier founds one of its own */
 struct grrl_perception_window {
-    float x[GRRL_MAX_FEATURES];
-    float y[GRRL_MAX_FEATURES];
-    uint8_t n[GRRL_MAX_FEATURES];
+    struct grrl_perception_sum heap[2][GRRL_MAX_FEATURES];
     uint8_t frames;
 };
 

@@ -1,0 +1,360 @@
+/* grrl-bench match: the library and its peers on the same pairs. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "bench.h"
+
+enum { MOST_PAIRS = 256, MOST_PEERS = 6, SWEEPS = 7, N_SIZES = 4, PATIENCE_S = 4 };
+
+/* A sweep over the pairs lasts at least this long, by repetition. */
+#define SWEEP_NS 2e5
+
+static const uint8_t sizes[N_SIZES] = {4, 8, 16, 32};
+static const char *const shape_names[BENCH_SHAPES] = {"chain", "tree", "loop", "loops"};
+static const char *const question_names[BENCH_QUESTIONS] = {"isomorphic", "not isomorphic",
+                                                            "sub-structure", "no sub-structure"};
+
+/* --- the library as a peer -------------------------------------------------------------------- */
+
+static void destroy(void *built)
+{
+    free(built);
+}
+
+static void *allocate(size_t size)
+{
+    void *memory = malloc(size);
+    if (memory == NULL)
+        abort();
+    return memory;
+}
+
+/* A copy: what a term is read into is the library's form already (see the time for a term). */
+static void *build_graph(const struct grrl_graph *graph)
+{
+    struct grrl_graph *built = allocate(sizeof *built);
+    *built = *graph;
+    return built;
+}
+
+static int match_graphs(enum grrl_match_kind kind, const void *pattern, const void *target)
+{
+    uint8_t map[GRRL_MAX_LINKS];
+    enum grrl_status status =
+        grrl_match_find(kind, pattern, target, GRRL_ALL_PROPERTIES, GRRL_MATCH_BUDGET, map);
+    return status == GRRL_OK ? 1 : status == GRRL_ERR_NONE ? 0 : -1;
+}
+
+struct planned {
+    struct grrl_match_plan plan;
+    struct grrl_graph graph;
+};
+
+static void *build_plan(const struct grrl_graph *graph)
+{
+    struct planned *built = allocate(sizeof *built);
+    built->graph = *graph;
+    grrl_match_plan(&built->plan, &built->graph, GRRL_ALL_PROPERTIES);
+    return built;
+}
+
+static int match_planned(enum grrl_match_kind kind, const void *pattern, const void *target)
+{
+    const struct planned *a = pattern;
+    const struct planned *b = target;
+    uint8_t map[GRRL_MAX_LINKS];
+    enum grrl_status status =
+        grrl_match_find_planned(kind, &a->plan, &b->plan, GRRL_MATCH_BUDGET, map);
+    return status == GRRL_OK ? 1 : status == GRRL_ERR_NONE ? 0 : -1;
+}
+
+static const struct bench_peer grrl = {"grrl", build_graph, destroy, match_graphs};
+static const struct bench_peer grrl_planned = {"grrl planned", build_plan, destroy, match_planned};
+
+static unsigned list_peers(const struct bench_peer **peers)
+{
+    unsigned n = 0;
+    peers[n++] = &grrl;
+    peers[n++] = &grrl_planned;
+#ifdef GRRL_BENCH_BOOST
+    peers[n++] = &bench_boost;
+#endif
+#ifdef GRRL_BENCH_IGRAPH
+    peers[n++] = &bench_igraph;
+#endif
+#ifdef GRRL_BENCH_NAUTY
+    peers[n++] = &bench_nauty;
+#endif
+    return n;
+}
+
+/* --- measuring -------------------------------------------------------------------------------- */
+
+/* Nanoseconds a query. */
+struct times {
+    double mean; /* median over sweeps of the mean over pairs: branches are not learned by heart */
+    double median;
+    double p99;
+    double worst; /* of the pairs, each the best of a few */
+    double build; /* of both graphs */
+};
+
+static double clock_cost(void)
+{
+    double cost[101];
+    for (int i = 0; i < 101; i++) {
+        double start = bench_now_ns();
+        cost[i] = bench_now_ns() - start;
+    }
+    bench_sort(cost, 101);
+    return cost[50];
+}
+
+static void check(const struct bench_peer *peer, const struct bench_pair *pair, int answer)
+{
+    if (answer != (int)pair->matches) {
+        (void)fprintf(stderr, "grrl-bench: %s answers %d instead of %d\n", peer->name, answer,
+                      (int)pair->matches);
+        exit(1);
+    }
+}
+
+static double sweep(const struct bench_peer *peer, const struct bench_pair *pairs, void *built[][2],
+                    unsigned n)
+{
+    double start = bench_now_ns();
+    double spent;
+    unsigned rounds = 0;
+    do {
+        for (unsigned i = 0; i < n; i++)
+            check(peer, &pairs[i], peer->match(pairs[i].kind, built[i][0], built[i][1]));
+        rounds++;
+        spent = bench_now_ns() - start;
+    } while (spent < SWEEP_NS);
+    return spent / rounds / n;
+}
+
+static void measure_singly(const struct bench_peer *peer, const struct bench_pair *pairs,
+                           void *built[][2], unsigned n, struct times *times)
+{
+    double best[MOST_PAIRS];
+    double overhead = clock_cost();
+    for (int round = 0; round < 5; round++) {
+        for (unsigned i = 0; i < n; i++) {
+            double start = bench_now_ns();
+            check(peer, &pairs[i], peer->match(pairs[i].kind, built[i][0], built[i][1]));
+            double spent = bench_now_ns() - start - overhead;
+            best[i] = round == 0 || spent < best[i] ? spent : best[i];
+        }
+    }
+    bench_sort(best, n);
+    times->median = bench_quantile(best, n, 0.5);
+    times->p99 = bench_quantile(best, n, 0.99);
+    times->worst = best[n - 1];
+}
+
+static bool measure_here(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
+                         struct times *times)
+{
+    static void *built[MOST_PAIRS][2];
+    double build[SWEEPS];
+    double match[SWEEPS];
+    for (unsigned i = 0; i < n; i++) {
+        built[i][0] = peer->build(&pairs[i].pattern);
+        built[i][1] = peer->build(&pairs[i].target);
+    }
+    bool able = peer->match(pairs[0].kind, built[0][0], built[0][1]) >= 0;
+    for (int s = 0; s < SWEEPS && able; s++)
+        match[s] = sweep(peer, pairs, built, n);
+    if (able)
+        measure_singly(peer, pairs, built, n, times);
+    for (int s = 0; s < SWEEPS; s++) {
+        double start = bench_now_ns();
+        for (unsigned i = 0; i < n; i++) {
+            peer->destroy(built[i][0]);
+            peer->destroy(built[i][1]);
+            built[i][0] = peer->build(&pairs[i].pattern);
+            built[i][1] = peer->build(&pairs[i].target);
+        }
+        build[s] = (bench_now_ns() - start) / n;
+    }
+    for (unsigned i = 0; i < n; i++) {
+        peer->destroy(built[i][0]);
+        peer->destroy(built[i][1]);
+    }
+    bench_sort(build, SWEEPS);
+    bench_sort(match, able ? SWEEPS : 0);
+    times->build = build[SWEEPS / 2];
+    times->mean = match[SWEEPS / 2];
+    return able;
+}
+
+/* In a process of its own for some seconds: a peer may never end. False: it cannot be asked this,
+ * or it did not end. */
+static bool measure(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
+                    struct times *times)
+{
+    int ends[2];
+    (void)fflush(stdout);
+    if (pipe(ends) != 0)
+        abort();
+    pid_t child = fork();
+    if (child == 0) {
+        (void)alarm(PATIENCE_S);
+        if (!measure_here(peer, pairs, n, times))
+            _exit(1);
+        _exit(write(ends[1], times, sizeof *times) != (ssize_t)sizeof *times);
+    }
+    (void)close(ends[1]);
+    bool good = child > 0 && read(ends[0], times, sizeof *times) == (ssize_t)sizeof *times;
+    (void)close(ends[0]);
+    (void)waitpid(child, NULL, 0);
+    return good;
+}
+
+/* --- reports ---------------------------------------------------------------------------------- */
+
+/* Of one peer on the cases of a row, as sums of logarithms: geometric means. */
+struct row {
+    double mean;
+    double built;
+    double p99;
+    double worst;
+    unsigned n;
+};
+
+static void add_case(bool json, bool *first, const char *peer, const char *what, uint8_t n,
+                     const struct times *times)
+{
+    if (json)
+        (void)printf("%s\n{\"peer\": \"%s\", \"case\": \"%s\", \"links\": %u, \"mean_ns\": %.1f, "
+                     "\"median_ns\": %.1f, \"p99_ns\": %.1f, \"worst_ns\": %.1f, "
+                     "\"build_both_ns\": %.1f}",
+                     *first ? "" : ",", peer, what, (unsigned)n, times->mean, times->median,
+                     times->p99, times->worst, times->build);
+    *first = false;
+}
+
+static void print_rows(const struct bench_peer **peers, unsigned n_peers, const struct row *rows,
+                       uint8_t n, const char *what)
+{
+    for (unsigned p = 0; p < n_peers; p++) {
+        const struct row *row = &rows[p];
+        if (row->n == 0)
+            continue; /* cannot be asked */
+        if (row->n < BENCH_SHAPES) {
+            (void)printf("| %2u | %s | %s | no end on %u of %d shapes |\n", (unsigned)n, what,
+                         peers[p]->name, BENCH_SHAPES - row->n, BENCH_SHAPES);
+            continue;
+        }
+        double mean = exp(row->mean / row->n);
+        double built = exp(row->built / row->n);
+        (void)printf("| %2u | %-16s | %-12s | %9.1f | %9.1f | %9.0f | %9.0f | %7.1f | %7.1f |\n",
+                     (unsigned)n, what, peers[p]->name, mean, built, exp(row->p99 / row->n),
+                     row->worst, mean / exp(rows[0].mean / row->n),
+                     mean / exp(rows[1].mean / row->n));
+    }
+}
+
+static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
+                         enum bench_question question)
+{
+    static struct bench_pair pairs[MOST_PAIRS];
+    const struct bench_peer *peers[MOST_PEERS];
+    struct row rows[MOST_PEERS] = {{0}};
+    unsigned n_peers = list_peers(peers);
+    for (int shape = 0; shape < BENCH_SHAPES; shape++) {
+        struct grrl_random random;
+        grrl_random_init(&random, 20080625u,
+                         (uint64_t)n * 64 + (uint64_t)question * 8 + (uint64_t)shape);
+        for (unsigned i = 0; i < n_pairs; i++)
+            bench_pair(&random, (enum bench_shape)shape, question, n, &pairs[i]);
+        for (unsigned p = 0; p < n_peers; p++) {
+            struct times times = {0, 0, 0, 0, 0};
+            if (!measure(peers[p], pairs, n_pairs, &times))
+                continue;
+            char what[40];
+            (void)snprintf(what, sizeof what, "%s, %s", shape_names[shape],
+                           question_names[question]);
+            add_case(json, first, peers[p]->name, what, n, &times);
+            rows[p].mean += log(times.mean);
+            rows[p].built += log(times.mean + times.build);
+            rows[p].p99 += log(times.p99);
+            rows[p].worst = times.worst > rows[p].worst ? times.worst : rows[p].worst;
+            rows[p].n++;
+        }
+    }
+    if (!json)
+        print_rows(peers, n_peers, rows, n, question_names[question]);
+}
+
+/* The symmetric worst cases, each once: a peer may need seconds. */
+static void run_symmetric(bool json, bool *first)
+{
+    static const struct {
+        const char *name;
+        uint8_t legs;
+        bool part;
+    } cases[] = {{"hexapod 6x3 near miss", 6, false},
+                 {"10x3 near miss", 10, false},
+                 {"hexapod 6x3 no part", 6, true},
+                 {"10x3 no part", 10, true}};
+    const struct bench_peer *peers[MOST_PEERS];
+    unsigned n_peers = list_peers(peers);
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        struct bench_pair pair;
+        if (cases[c].part)
+            bench_near_part(cases[c].legs, &pair);
+        else
+            bench_near_miss(cases[c].legs, &pair);
+        for (unsigned p = 0; p < n_peers; p++) {
+            void *a = peers[p]->build(&pair.pattern);
+            void *b = peers[p]->build(&pair.target);
+            bool slow = cases[c].legs > 6 && p >= 2 && strcmp(peers[p]->name, "nauty") != 0;
+            double best = INFINITY;
+            double spent = 0;
+            for (int i = 0; i < 1000 && spent < 1e9 && !slow; i++) {
+                double start = bench_now_ns();
+                int answer = peers[p]->match(pair.kind, a, b);
+                double once = bench_now_ns() - start;
+                if (answer < 0)
+                    break;
+                check(peers[p], &pair, answer);
+                spent += once;
+                best = once < best ? once : best;
+            }
+            struct times times = {best, best, best, best, 0};
+            if (spent > 0 && json)
+                add_case(json, first, peers[p]->name, cases[c].name, pair.target.n, &times);
+            else if (spent > 0)
+                (void)printf("%-24s %-14s %12.0f ns\n", cases[c].name, peers[p]->name, best);
+            peers[p]->destroy(a);
+            peers[p]->destroy(b);
+        }
+    }
+}
+
+int bench_match(bool json, unsigned n_pairs)
+{
+    bool first = true;
+    if (n_pairs > MOST_PAIRS)
+        n_pairs = MOST_PAIRS;
+    if (json)
+        (void)printf("[");
+    else
+        (void)printf("| links | question | peer | ns | with building both | p99 | worst | grrl is "
+                     "faster | planned |\n|---|---|---|---|---|---|---|---|---|\n");
+    for (int s = 0; s < N_SIZES; s++)
+        for (int question = 0; question < BENCH_QUESTIONS; question++)
+            run_question(json, &first, n_pairs, sizes[s], (enum bench_question)question);
+    if (!json)
+        (void)printf("\n");
+    run_symmetric(json, &first);
+    if (json)
+        (void)printf("\n]\n");
+    return 0;
+}

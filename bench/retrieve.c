@@ -1,0 +1,167 @@
+/* grrl-bench retrieve: the experience store at two sizes. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bench.h"
+#include "grrl/experience.h"
+
+enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4 };
+
+enum query {
+    QUERY_STORED, /* a stored state, its links in another order */
+    QUERY_PART,   /* a stored state without one leaf or joint */
+    QUERY_WHOLE,  /* a stored state with one more link */
+    QUERY_FRESH,  /* one of the same kind as the stored ones */
+    QUERIES
+};
+
+static const char *const query_names[QUERIES] = {"stored", "stored less a link",
+                                                 "stored and a link", "unrelated"};
+
+struct setup {
+    struct grrl_experience_store store;
+    struct grrl_random random;
+    bool json;
+    bool first;
+};
+
+static void *allocate(size_t n, size_t size)
+{
+    void *memory = calloc(n, size);
+    if (memory == NULL)
+        abort();
+    return memory;
+}
+
+static void random_state(struct grrl_random *random, struct grrl_graph *graph)
+{
+    uint8_t n = (uint8_t)(FEWEST_LINKS + grrl_random_below(random, MOST_LINKS - FEWEST_LINKS + 1));
+    bench_graph(random, (enum bench_shape)grrl_random_below(random, BENCH_SHAPES), n, graph);
+}
+
+/* Fills a store with n different states, one to six actions each. */
+static void fill(struct setup *setup, uint32_t n, bool with_index)
+{
+    grrl_random_init(&setup->random, 20080625u, n);
+    grrl_experience_init(&setup->store, allocate(n, sizeof(struct grrl_experience_state)), n,
+                         allocate(6 * (size_t)n, sizeof(struct grrl_experience)), 6 * n);
+    if (with_index)
+        grrl_experience_use_index(&setup->store,
+                                  allocate((size_t)n * GRRL_SIGNATURE_WORDS, sizeof(uint64_t)));
+    while (setup->store.n_states < n) {
+        struct grrl_graph graph;
+        random_state(&setup->random, &graph);
+        for (uint32_t k = 1 + grrl_random_below(&setup->random, 6); k > 0; k--)
+            if (grrl_experience_update(&setup->store, &graph,
+                                       (uint8_t)grrl_random_below(&setup->random, graph.n),
+                                       (uint8_t)grrl_random_below(&setup->random, GRRL_DIRECTIONS),
+                                       1.0f, 0.5f, NULL) != GRRL_OK)
+                abort();
+    }
+}
+
+static void empty(struct setup *setup)
+{
+    free(setup->store.states);
+    free(setup->store.experiences);
+    free(setup->store.index);
+}
+
+static void make_query(struct setup *setup, enum query kind, struct grrl_graph *graph)
+{
+    uint32_t state = grrl_random_below(&setup->random, setup->store.n_states);
+    if (kind == QUERY_FRESH) {
+        random_state(&setup->random, graph);
+        return;
+    }
+    grrl_experience_graph(&setup->store.states[state], graph);
+    uint8_t order[GRRL_MAX_LINKS];
+    for (uint8_t i = 0; i < graph->n; i++) {
+        uint8_t j = (uint8_t)grrl_random_below(&setup->random, i + 1u);
+        order[i] = order[j];
+        order[j] = i;
+    }
+    struct grrl_graph shuffled;
+    grrl_graph_permute(graph, order, &shuffled);
+    *graph = shuffled;
+    if (kind == QUERY_PART) {
+        uint8_t last = --graph->n;
+        graph->label[last] = 0;
+        for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
+            graph->joined[type][last] = 0;
+            for (uint8_t i = 0; i < last; i++)
+                graph->joined[type][i] &= ~(UINT32_C(1) << last);
+        }
+    } else if (kind == QUERY_WHOLE) {
+        uint8_t added;
+        uint8_t to = (uint8_t)grrl_random_below(&setup->random, graph->n);
+        if (grrl_graph_add_link(graph, 1, &added) != GRRL_OK ||
+            grrl_graph_add_joint(graph, added, to, GRRL_REVOLUTE) != GRRL_OK)
+            abort();
+    }
+}
+
+static void report(struct setup *setup, const char *level, enum query kind, double *spent,
+                   double known)
+{
+    bench_sort(spent, N_QUERIES);
+    double median = bench_quantile(spent, N_QUERIES, 0.5);
+    double p99 = bench_quantile(spent, N_QUERIES, 0.99);
+    double worst = spent[N_QUERIES - 1];
+    const char *index = setup->store.index != NULL ? "yes" : "no";
+    if (setup->json)
+        (void)printf("%s\n{\"states\": %u, \"index\": \"%s\", \"level\": \"%s\", \"query\": "
+                     "\"%s\", \"median_ns\": %.0f, \"p99_ns\": %.0f, \"worst_ns\": %.0f, "
+                     "\"actions_known\": %.3f}",
+                     setup->first ? "" : ",", setup->store.n_states, index, level,
+                     query_names[kind], median, p99, worst, known);
+    else
+        (void)printf("| %6u | %-5s | %-13s | %-18s | %9.1f | %9.1f | %9.1f | %5.1f |\n",
+                     setup->store.n_states, index, level, query_names[kind], median / 1e3,
+                     p99 / 1e3, worst / 1e3, 100 * known);
+    setup->first = false;
+}
+
+static void run_queries(struct setup *setup, enum grrl_recall_level deepest, const char *level,
+                        enum query kind)
+{
+    static double spent[N_QUERIES];
+    const struct grrl_recall_config config = {deepest, GRRL_MATCH_BUDGET};
+    double known = 0;
+    for (int i = 0; i < N_QUERIES; i++) {
+        struct grrl_graph graph;
+        struct grrl_recall recall;
+        make_query(setup, kind, &graph);
+        double start = bench_now_ns();
+        grrl_experience_recall(&setup->store, &graph, &config, &recall);
+        spent[i] = bench_now_ns() - start;
+        unsigned entries = 0;
+        for (uint8_t link = 0; link < graph.n; link++)
+            for (int d = 0; d < GRRL_DIRECTIONS; d++)
+                entries += recall.entry[link][d].experience != GRRL_NO_EXPERIENCE;
+        known += (double)entries / (graph.n * GRRL_DIRECTIONS);
+    }
+    report(setup, level, kind, spent, known / N_QUERIES);
+}
+
+int bench_retrieve(bool json)
+{
+    static const uint32_t sizes[] = {1000, 100000};
+    struct setup setup = {.json = json, .first = true};
+    (void)printf(json ? "["
+                      : "| states | index | level | query | median, us | p99 | worst | actions "
+                        "known, %% |\n|---|---|---|---|---|---|---|---|\n");
+    for (int s = 0; s < 2; s++) {
+        for (int with_index = 0; with_index < 2; with_index++) {
+            fill(&setup, sizes[s], with_index == 1);
+            run_queries(&setup, GRRL_RECALL_EXACT, "exact", QUERY_STORED);
+            run_queries(&setup, GRRL_RECALL_RELAXED, "relaxed", QUERY_STORED);
+            for (int kind = 0; kind < QUERIES; kind++)
+                run_queries(&setup, GRRL_RECALL_SUBSTRUCTURE, "sub-structure", (enum query)kind);
+            empty(&setup);
+        }
+    }
+    if (json)
+        (void)printf("\n]\n");
+    return 0;
+}

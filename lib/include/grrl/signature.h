@@ -1,0 +1,43 @@
+/*
+ * signature.h: counts of a structure that can only grow when links or joints are added.
+ *
+ * If a graph is a sub-structure of another, each of its counts is at most the other's; so most
+ * pairs are told apart without a search. Seven bits a count, full at 127, eight counts a word, so
+ * that a comparison of eight is one subtraction.
+ */
+#ifndef GRRL_SIGNATURE_H
+#define GRRL_SIGNATURE_H
+
+#include "grrl/graph.h"
+
+/*
+ * The first two words are about the shape: links; joints by type; links with two or more revolute,
+ * two or more prismatic, three or more joints; four or more; loops; then pairs of joints at one
+ * link by types (three counts), chains of three joints by types (five counts). The others count
+ * under the mask: links by label, joints by type and labels, pairs of joints by types and labels;
+ * labels share counts by a hash.
+ */
+enum { GRRL_SIGNATURE_SHAPE = 2, GRRL_SIGNATURE_WORDS = 5 };
+
+struct grrl_signature {
+    /* private */
+    uint64_t word[GRRL_SIGNATURE_WORDS];
+};
+
+/* mask: the properties that count. Cost: linear in the pairs of joints that share a link. */
+void grrl_signature(const struct grrl_graph *graph, grrl_label mask,
+                    struct grrl_signature *signature);
+
+/* Whether a graph with the first signature could be a sub-structure of one with the second, made
+ * under the same mask; shape_only: whatever the properties. False is certain. */
+static inline bool grrl_signature_within(const struct grrl_signature *part,
+                                         const struct grrl_signature *whole, bool shape_only)
+{
+    const uint64_t full = UINT64_C(0x8080808080808080);
+    uint64_t fits = full;
+    for (int i = 0; i < (shape_only ? GRRL_SIGNATURE_SHAPE : GRRL_SIGNATURE_WORDS); i++)
+        fits &= (whole->word[i] | full) - part->word[i];
+    return (fits & full) == full;
+}
+
+#endif
