@@ -101,7 +101,7 @@ void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *d
     if (choice->reason == GRRL_CHOICE_EXPLOIT) {
         message->level = (int8_t)choice->from.level;
         message->distance = choice->from.distance;
-        message->experience = choice->from.experience;
+        message->experience = (int32_t)choice->from.experience;
         message->value = choice->value;
         message->lower = choice->lower;
         message->upper = choice->upper;
@@ -174,8 +174,8 @@ void agent_publish_status(struct grrl_agent *agent)
         .plant_session_id = agent->plant_session_id,
         .trial_id = agent->stage == STAGE_NONE ? 0 : agent->trial_id,
         .pushes = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq,
-        .experiences = store->n_experiences,
-        .capacity = store->experiences_capacity,
+        .experiences = (int32_t)store->n_experiences,
+        .capacity = (int32_t)store->experiences_capacity,
         .evictions = (int32_t)(store->evictions & INT32_MAX),
         .received = agent->counts.received,
         .lost = agent->counts.lost,

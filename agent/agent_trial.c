@@ -86,7 +86,10 @@ static void choose(struct grrl_agent *agent)
             next_push(agent);
         return;
     }
-    enum grrl_status status = grrl_learner_choose(&agent->learner, &decision);
+    const struct grrl_agent_config *config = &agent->config;
+    enum grrl_status status = config->choose != NULL
+                                  ? config->choose(config->context, &agent->learner, &decision)
+                                  : grrl_learner_choose(&agent->learner, &decision);
     if (status != GRRL_OK) {
         agent_note(agent, status == GRRL_ERR_NONE ? "no link is seen that could be pushed"
                                                   : grrl_status_text(status));

@@ -67,6 +67,9 @@ public:
     bool agent_known() const { return agent_session_id_ != 0; }
 
     int64_t frames() const { return seq_; }
+
+    /* The trial's truth, to measure with; nothing for an agent. */
+    const World &world() const { return *world_; }
     int64_t rejected() const { return rejected_; }
     int64_t foreign() const { return foreign_; }
 

@@ -188,6 +188,11 @@ Physics::Physics(const ObjectSpec &object, const std::vector<Pose> &poses, doubl
 
 Physics::~Physics() = default;
 
+void Physics::keep_levels(const Physics &other)
+{
+    bodies_->levels.apart = other.bodies_->levels.apart;
+}
+
 void Physics::scale_friction(const std::vector<double> &links, const std::vector<double> &joints)
 {
     for (size_t t = 0; t < bodies_->table_joints.size(); t++) {

@@ -28,6 +28,9 @@ public:
     Physics(const Physics &) = delete;
     Physics &operator=(const Physics &) = delete;
 
+    /* Links of the same object that lay across one another there, do so here. */
+    void keep_levels(const Physics &other);
+
     /* Multiplies the friction of link i against the table and in joint j. */
     void scale_friction(const std::vector<double> &links, const std::vector<double> &joints);
 

@@ -56,6 +56,15 @@ struct World::Impl {
         greatest = least;
     }
 
+    Impl(const Impl &other, uint64_t seed)
+        : object(other.object), params(other.params), placing(seed, Stream::OBJECT),
+          pushing(seed, Stream::PUSH), noise(seed, Stream::NOISE), start(other.physics.poses()),
+          physics(object, start, params.table_friction, finger_radius_m), tracker(other.tracker),
+          frames(other.frames), least(other.least), greatest(other.greatest)
+    {
+        physics.keep_levels(other.physics);
+    }
+
     void start_push();
     void draw_friction();
     bool free_for_finger(Vec2 point, const std::vector<Pose> &poses) const;
@@ -205,6 +214,13 @@ std::string check_world(const WorldParams &params)
 World::World(const ObjectSpec &object, const WorldParams &params, uint64_t seed)
     : impl_(std::make_unique<Impl>(object, params, seed))
 {
+}
+
+World::World(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+World World::copy(uint64_t seed) const
+{
+    return World(std::make_unique<Impl>(*impl_, seed));
 }
 
 World::~World() = default;

@@ -46,6 +46,11 @@ public:
     World(const ObjectSpec &object, const WorldParams &params, uint64_t seed);
     ~World();
     World(World &&) noexcept;
+
+    /* The scene as it lies now, at rest; its pushes and pictures are off by the noise of another
+     * seed. For trying out what a push would do: this world does not change. */
+    World copy(uint64_t seed) const;
+
     World &operator=(World &&) noexcept;
 
     /* Starts a push. Returns why not (check_push, or one is going on), or an empty text. */
@@ -76,6 +81,7 @@ public:
 
 private:
     struct Impl;
+    explicit World(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -7,7 +7,7 @@ start agent "$AGENT" --lcm-url "$URL" --store kept.store
 agent=$LAST
 start sim timeout 100 "$SIM" --lcm-url "$URL" --object RPRPRPR --trials 30 --results r.csv
 sim=$LAST
-for _ in $(seq 200); do
+for _ in $(seq 1500); do
     [ "$(wc -l <r.csv 2>/dev/null || echo 0)" -ge 4 ] && break
     sleep 0.02
 done

@@ -22,7 +22,7 @@ refused 2 "$AGENT" --beta nan
 refused 2 "$AGENT" --noise 0
 refused 2 "$AGENT" --seed -1
 refused 2 "$AGENT" --experiences 0
-refused 2 "$AGENT" --experiences 70000
+refused 2 "$AGENT" --experiences 7000000
 refused 2 "$AGENT" --store
 refused 2 "$AGENT" --quiet --explain
 refused 2 "$AGENT" extra

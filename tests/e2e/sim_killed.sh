@@ -6,7 +6,7 @@ start agent timeout 60 "$AGENT" --lcm-url "$URL" --store kept.store
 agent=$LAST
 start sim "$SIM" --lcm-url "$URL" --object RPRPRPR --trials 1000 --results r.csv
 sim=$LAST
-for _ in $(seq 200); do
+for _ in $(seq 1500); do
     [ "$(wc -l <r.csv 2>/dev/null || echo 0)" -ge 3 ] && break
     sleep 0.02
 done

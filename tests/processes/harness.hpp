@@ -59,6 +59,7 @@ struct Setup {
     bool forged_messages = false; /* foreign and malformed ones come between */
     size_t restart_agent_at = 0;  /* once so many pushes were commanded; 0: never */
     size_t restart_node_at = 0;
+    enum grrl_status (*choose)(void *, grrl_learner *, grrl_decision *) = nullptr;
 };
 
 inline int64_t clock_us;
@@ -131,6 +132,7 @@ private:
         config.learner.seed = setup_.seed;
         config.session_id = agent_session_;
         config.now_us = agent_clock;
+        config.choose = setup_.choose;
         config.states = states_.data();
         config.states_capacity = capacity;
         config.experiences = experiences_.data();

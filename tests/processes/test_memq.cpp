@@ -96,6 +96,35 @@ void a_restarted_simulator_starts_over(void **)
     assert_true(outcome.agent_foreign > 0); /* until the old one was silent for long enough */
 }
 
+grrl_status first_link_forward(void *, grrl_learner *learner, grrl_decision *decision)
+{
+    const grrl_model *model = grrl_perception_model(&learner->perception);
+    return grrl_learner_adopt(learner, model->body[0].number, 0, decision);
+}
+
+void somebody_else_may_choose(void **)
+{
+    Setup setup;
+    setup.cap = 5;
+    setup.choose = first_link_forward;
+    Run run(setup);
+    Outcome outcome = run.finish();
+    assert_int_equal(outcome.trials.size(), 3);
+    int decisions = 0;
+    for (const Message &message : run.messages()) {
+        grrl_decision_t decision;
+        grrl_wire_why why;
+        if (message.channel != GRRL_CHANNEL_DECISION)
+            continue;
+        assert_true(grrl_wire_decode_decision(
+            message.data.data(), static_cast<uint32_t>(message.data.size()), &decision, &why));
+        assert_int_equal(decision.reason, GRRL_DECISION_T_FOREIGN);
+        assert_int_equal(decision.direction_deg, 0);
+        decisions++;
+    }
+    assert_true(decisions >= static_cast<int>(outcome.pushes.size()));
+}
+
 } // namespace
 
 int main()
@@ -108,6 +137,7 @@ int main()
         cmocka_unit_test(old_messages_change_nothing),
         cmocka_unit_test(foreign_and_malformed_messages_change_nothing),
         cmocka_unit_test(real_time_works_too),
+        cmocka_unit_test(somebody_else_may_choose),
         cmocka_unit_test(a_restarted_agent_costs_one_trial),
         cmocka_unit_test(a_restarted_simulator_starts_over),
     };

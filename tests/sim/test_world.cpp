@@ -352,6 +352,36 @@ void a_frame_holds_nothing_but_what_is_seen(void **)
     assert_true(time_s <= 0.0 && id == 1 && x < y);
 }
 
+void a_copy_is_the_same_scene_and_leaves_it_alone(void **)
+{
+    World world(must_build("RPRPRPR"), WorldParams{}, 5);
+    PushCommand push;
+    push.end_m = world.true_poses()[3].position;
+    push.start_m = push.end_m + Vec2{0.0, 0.1};
+    assert_string_equal(world.begin_push(push).c_str(), "");
+    while (world.step_frame())
+        ;
+    assert_true(world.push_result().touched);
+    push.start_m = world.true_poses()[3].position + Vec2{0.0, 0.1};
+    push.end_m = world.true_poses()[3].position;
+    uint64_t before = world.state_hash();
+    World a = world.copy(7);
+    World b = world.copy(7);
+    World c = world.copy(8);
+    assert_true(a.state_hash() == before);
+    for (int j = 0; j < 7; j++)
+        assert_true(std::abs(a.true_joint_value(j) - world.true_joint_value(j)) < 1e-6);
+    for (World *copy : {&a, &b, &c}) {
+        assert_string_equal(copy->begin_push(push).c_str(), "");
+        while (copy->step_frame())
+            ;
+    }
+    assert_true(a.state_hash() == b.state_hash());
+    assert_true(a.state_hash() != c.state_hash());
+    assert_true(a.state_hash() != before);
+    assert_true(world.state_hash() == before);
+}
+
 } // namespace
 
 int main()
@@ -372,6 +402,7 @@ int main()
         cmocka_unit_test(dropouts_and_outliers_come_as_often_as_told),
         cmocka_unit_test(the_background_is_static_and_hidden_when_covered),
         cmocka_unit_test(a_full_structure_keeps_to_what_a_tracker_follows),
+        cmocka_unit_test(a_copy_is_the_same_scene_and_leaves_it_alone),
         cmocka_unit_test(a_frame_holds_nothing_but_what_is_seen),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -1,0 +1,158 @@
+#include "clairvoyant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "truth.hpp"
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+using grrl_sim::World;
+
+/* Motion after which perception is mostly sure of a joint: twice what it asks for at least. */
+constexpr double sure_turn_rad = 0.14;
+constexpr double sure_slide_m = 0.006;
+
+/* Frames at rest after a push, as the simulator's node sends them. */
+constexpr int rest_frames = 10;
+
+/* What a moved joint counts besides a believed one: it decides among pushes that reveal the same.
+ */
+constexpr double moved_share = 0.1;
+
+grrl_sim::PushCommand command_of(const grrl_push &push)
+{
+    grrl_sim::PushCommand command;
+    command.start_m = {static_cast<double>(push.start_m.x), static_cast<double>(push.start_m.y)};
+    command.end_m = {static_cast<double>(push.end_m.x), static_cast<double>(push.end_m.y)};
+    command.travel_m = static_cast<double>(push.travel_m);
+    command.speed_m_s = static_cast<double>(push.speed_m_s);
+    command.force_limit_n = static_cast<double>(push.force_n);
+    command.timeout_s = static_cast<double>(push.timeout_s);
+    return command;
+}
+
+double sure_motion(const grrl_sim::JointSpec &joint)
+{
+    return joint.type == GRRL_REVOLUTE ? sure_turn_rad : sure_slide_m;
+}
+
+/* Joints rightly believed less joints wrongly believed. */
+double rightly_believed(const World &world, const grrl_model &model)
+{
+    Belief belief = belief_of(model);
+    std::vector<bool> known = known_joints(world, belief);
+    std::vector<bool> wrong = wrong_joints(world, belief);
+    return static_cast<double>(std::count(known.begin(), known.end(), true) -
+                               std::count(wrong.begin(), wrong.end(), true));
+}
+
+void see(World &world, grrl_perception &perception, bool pushing)
+{
+    grrl_sim::Frame frame;
+    std::vector<int32_t> ids;
+    std::vector<float> x;
+    std::vector<float> y;
+    world.observe(frame);
+    for (const grrl_sim::TrackedFeature &feature : frame.features) {
+        ids.push_back(static_cast<int32_t>(feature.id));
+        x.push_back(static_cast<float>(feature.x_m));
+        y.push_back(static_cast<float>(feature.y_m));
+    }
+    grrl_frame seen = {static_cast<uint32_t>(ids.size()), ids.data(), x.data(), y.data()};
+    grrl_perception_observe(&perception, &seen, pushing);
+}
+
+class Clairvoyant : public Chooser
+{
+public:
+    Clairvoyant(std::function<const World &()> world, uint64_t seed)
+        : world_(std::move(world)), seed_(seed)
+    {
+    }
+    void begin_trial() override { tried_.clear(); }
+    void look(const grrl_perception &perception) override { perception_ = &perception; }
+    Action choose(const grrl_model &model) override;
+
+private:
+    double worth(const std::vector<bool> &known, const grrl_sim::PushCommand &command);
+
+    std::function<const World &()> world_;
+    uint64_t seed_;
+    const grrl_perception *perception_ = nullptr;
+    Tried tried_;
+};
+
+/* How many of the joints not known were moved, as shares of the motion that makes sure. */
+double moved(const World &before, const World &after, const std::vector<bool> &known)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j < known.size(); j++) {
+        int joint = static_cast<int>(j);
+        double by = std::abs(after.true_joint_value(joint) - before.true_joint_value(joint));
+        if (!known[j])
+            sum += std::min(1.0, by / sure_motion(before.object().joints[j]));
+    }
+    return sum;
+}
+
+/* What would be believed after a push, tried in copies of world and perception. */
+double Clairvoyant::worth(const std::vector<bool> &known, const grrl_sim::PushCommand &command)
+{
+    auto perception = std::make_unique<grrl_perception>(*perception_);
+    World copy = world_().copy(seed_++);
+    if (!copy.begin_push(command).empty())
+        return 0.0;
+    bool moving = true;
+    while (moving) {
+        moving = copy.step_frame();
+        see(copy, *perception, true);
+    }
+    for (int i = 0; i < rest_frames; i++)
+        see(copy, *perception, false);
+    double share = moved_share * moved(world_(), copy, known);
+    if (grrl_perception_update(perception.get()) != GRRL_OK)
+        return share;
+    return rightly_believed(copy, *grrl_perception_model(perception.get())) + share;
+}
+
+Action Clairvoyant::choose(const grrl_model &model)
+{
+    std::vector<bool> known = known_joints(world_(), belief_of(model));
+    grrl_grounding_config config;
+    grrl_grounding_config_default(&config);
+    Action best{model.body[0].number, 0};
+    bool any = false;
+    double most = 0.0;
+    tried_.look(model);
+    for (uint8_t body = 0; body < model.n_bodies; body++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
+            grrl_push push;
+            Action action{model.body[body].number, direction};
+            if (tried_.has(action) ||
+                grrl_grounding_push(&model, &config, body, direction, &push) != GRRL_OK)
+                continue;
+            double gain = worth(known, command_of(push));
+            if (!any || gain > most) {
+                any = true;
+                most = gain;
+                best = action;
+            }
+        }
+    }
+    tried_.add(best);
+    return best;
+}
+
+} // namespace
+
+std::unique_ptr<Chooser> make_clairvoyant(std::function<const World &()> world, uint64_t seed)
+{
+    return std::make_unique<Clairvoyant>(std::move(world), seed);
+}
+
+} // namespace grrl_experiment

@@ -1,0 +1,57 @@
+#include "files.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+[[noreturn]] void fail(const std::string &path)
+{
+    throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
+}
+
+} // namespace
+
+std::optional<std::string> read_file(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    if (!file || !(text << file.rdbuf()))
+        return std::nullopt;
+    return text.str();
+}
+
+void write_file(const std::string &path, const std::string &text)
+{
+    std::string part = path + ".part";
+    std::FILE *file = std::fopen(part.c_str(), "wb");
+    if (file == nullptr)
+        fail(part);
+    bool good = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    good = std::fflush(file) == 0 && good;
+    good = fsync(fileno(file)) == 0 && good;
+    good = std::fclose(file) == 0 && good;
+    if (!good || std::rename(part.c_str(), path.c_str()) != 0)
+        fail(path);
+}
+
+void make_folder(const std::string &path)
+{
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        throw std::runtime_error("cannot make the folder " + path + ": " + error.message());
+}
+
+} // namespace grrl_experiment

@@ -1,0 +1,151 @@
+#include "folder.hpp"
+
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "files.hpp"
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+/* FNV-1a. */
+std::string hash_of_file(const std::string &path)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    for (char byte : read_file(path).value_or(""))
+        hash = (hash ^ static_cast<unsigned char>(byte)) * UINT64_C(1099511628211);
+    char text[20];
+    (void)std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
+}
+
+/* An object by name; a file also by its content. */
+std::string object_line(const std::string &object)
+{
+    return read_file(object) ? object + " (" + hash_of_file(object) + ")" : object;
+}
+
+std::string settings_of(const Options &options, const Plan &plan)
+{
+    std::ostringstream text;
+    text << "program " << hash_of_file("/proc/self/exe") << "\n"
+         << "seed " << options.seed << "\n"
+         << "cap " << options.cap << "\n"
+         << "noise " << options.noise_mm << "\n";
+    for (const Curve &curve : plan.curves)
+        text << "curve " << object_line(curve.object) << ", " << curve.policy->name << ", "
+             << curve.trials << " trials, before them "
+             << (curve.pretrain.empty()
+                     ? "none"
+                     : object_line(curve.pretrain) + ":" + std::to_string(curve.pretrain_trials))
+             << "\n";
+    return text.str();
+}
+
+/* The first line that two texts do not share, of each of them. */
+std::pair<std::string, std::string> difference(const std::string &a, const std::string &b)
+{
+    std::istringstream from_a(a);
+    std::istringstream from_b(b);
+    std::string line_a;
+    std::string line_b;
+    while (line_a == line_b && (from_a || from_b)) {
+        if (!std::getline(from_a, line_a))
+            line_a = from_b ? "nothing more" : line_a;
+        if (!std::getline(from_b, line_b))
+            line_b = from_a ? "nothing more" : line_b;
+    }
+    return {line_a, line_b};
+}
+
+} // namespace
+
+Folder::Folder(const Options &options, const Plan &plan) : root_(options.out)
+{
+    for (const Curve &curve : plan.curves)
+        trials_.push_back(curve.trials);
+    make_folder(path("experiments"));
+    lock();
+    check_settings(settings_of(options, plan));
+}
+
+Folder::~Folder()
+{
+    (void)close(lock_fd_);
+}
+
+void Folder::lock()
+{
+    lock_fd_ = open(path("lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (lock_fd_ < 0)
+        throw std::runtime_error("cannot write " + path("lock"));
+    if (flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
+        (void)close(lock_fd_);
+        throw std::runtime_error("another grrl-experiment is at work in " + root_);
+    }
+}
+
+void Folder::check_settings(const std::string &settings) const
+{
+    std::optional<std::string> known = read_file(path("settings.txt"));
+    if (!known) {
+        write_file(path("settings.txt"), settings);
+        return;
+    }
+    if (*known == settings)
+        return;
+    auto [there, here] = difference(*known, settings);
+    throw std::runtime_error(root_ + " holds results of other settings: '" + there + "' there, '" +
+                             here + "' here; name another folder or remove it");
+}
+
+std::string Folder::experiment_path(size_t curve, int experiment) const
+{
+    char name[60];
+    (void)std::snprintf(name, sizeof name, "experiments/curve-%02zu-%04d.csv", curve + 1,
+                        experiment);
+    return path(name);
+}
+
+std::optional<Trials> Folder::load(size_t curve, int experiment) const
+{
+    std::optional<std::string> text = read_file(experiment_path(curve, experiment));
+    if (!text)
+        return std::nullopt;
+    std::istringstream lines(*text);
+    std::string line;
+    Trials trials;
+    while (std::getline(lines, line)) {
+        TrialRow row;
+        int discovered = 0;
+        int end = 0;
+        if (std::sscanf(line.c_str(), "%d,%d,%d,%d%n", &row.trial, &row.pushes, &discovered,
+                        &row.wrong_joints, &end) != 4 ||
+            static_cast<size_t>(end) != line.size())
+            return std::nullopt;
+        row.discovered = discovered != 0;
+        trials.push_back(row);
+    }
+    if (static_cast<int>(trials.size()) != trials_[curve])
+        return std::nullopt;
+    return trials;
+}
+
+void Folder::save(size_t curve, int experiment, const Trials &trials) const
+{
+    std::ostringstream text;
+    for (const TrialRow &row : trials)
+        text << row.trial << "," << row.pushes << "," << (row.discovered ? 1 : 0) << ","
+             << row.wrong_joints << "\n";
+    write_file(experiment_path(curve, experiment), text.str());
+}
+
+} // namespace grrl_experiment

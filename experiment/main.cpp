@@ -1,0 +1,169 @@
+/* grrl-experiment: what is asked for, carried out by workers, and shown. */
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include <unistd.h>
+
+#include "files.hpp"
+#include "folder.hpp"
+#include "jobs.hpp"
+#include "options.hpp"
+#include "pictures.hpp"
+#include "plan.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "results.hpp"
+
+using namespace grrl_experiment;
+
+namespace
+{
+
+struct Task {
+    size_t curve;
+    int experiment; /* from 1 */
+};
+
+/* In a worker: one experiment, from no experience to its file. */
+void experiment(const Options &options, const Curve &curve, const Task &task, const Folder &folder,
+                const Report &report)
+{
+    Phase phase;
+    phase.policy = curve.policy;
+    phase.cap = options.cap;
+    phase.noise_m = options.noise_mm * 0.001;
+    uint64_t seed = experiment_seed(options.seed, task.experiment);
+    Bytes experience;
+    if (!curve.pretrain.empty()) {
+        phase.object = curve.pretrain_spec;
+        phase.trials = curve.pretrain_trials;
+        phase.seed = pretrain_seed(seed);
+        experience = run_phase(options.transport, phase, experience,
+                               [&](const TrialRow &row) { report(row.pushes); });
+    }
+    phase.object = curve.object_spec;
+    phase.trials = curve.trials;
+    phase.seed = seed;
+    Trials trials;
+    (void)run_phase(options.transport, phase, experience, [&](const TrialRow &row) {
+        trials.push_back(row);
+        report(row.pushes);
+    });
+    if (static_cast<int>(trials.size()) != curve.trials)
+        throw std::runtime_error("trials are missing");
+    folder.save(task.curve, task.experiment, trials);
+}
+
+/* Curves take turns, so that the time left can be told from what is done. */
+std::vector<Task> tasks_left(const Options &options, const Plan &plan, const Folder &folder)
+{
+    std::vector<Task> tasks;
+    for (int e = 1; e <= options.experiments; e++)
+        for (size_t c = 0; c < plan.curves.size(); c++)
+            if (!folder.load(c, e))
+                tasks.push_back({c, e});
+    return tasks;
+}
+
+int jobs_of(const Options &options)
+{
+    long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    return options.jobs > 0 ? options.jobs : static_cast<int>(cores > 0 ? cores : 1);
+}
+
+JobsResult run_tasks(const Options &options, const Plan &plan, const Folder &folder)
+{
+    std::vector<Task> tasks = tasks_left(options, plan, folder);
+    int64_t trials = 0;
+    for (const Task &task : tasks)
+        trials += plan.curves[task.curve].trials + plan.curves[task.curve].pretrain_trials;
+    size_t all = plan.curves.size() * static_cast<size_t>(options.experiments);
+    if (tasks.size() < all)
+        (void)std::fprintf(stderr, "grrl-experiment: %zu of %zu experiments are there already\n",
+                           all - tasks.size(), all);
+    if (tasks.empty())
+        return JobsResult::DONE;
+    Progress progress(trials, static_cast<int64_t>(tasks.size()));
+    JobCallbacks callbacks;
+    callbacks.work = [&](size_t i, const Report &report) {
+        experiment(options, plan.curves[tasks[i].curve], tasks[i], folder, report);
+    };
+    callbacks.on_trial = [&progress](int pushes) { progress.trial(pushes); };
+    callbacks.on_task = [&progress] { progress.experiment(); };
+    callbacks.on_tick = [&progress] { progress.show(); };
+    JobsResult result = run_jobs(tasks.size(), jobs_of(options), callbacks);
+    progress.finish();
+    if (result == JobsResult::DONE)
+        (void)std::fprintf(stderr,
+                           "grrl-experiment: %lld pushes in %.1f s, %.0f a second of CPU time\n",
+                           static_cast<long long>(progress.pushes()), progress.elapsed_s(),
+                           static_cast<double>(progress.pushes()) / workers_cpu_s());
+    return result;
+}
+
+void publish(const Options &options, const Plan &plan, const Folder &folder)
+{
+    std::vector<Experiments> results(plan.curves.size());
+    for (size_t c = 0; c < plan.curves.size(); c++)
+        for (int e = 1; e <= options.experiments; e++) {
+            std::optional<Trials> trials = folder.load(c, e);
+            if (!trials)
+                throw std::runtime_error("results of an experiment are gone");
+            results[c].push_back(*trials);
+        }
+    write_file(folder.path("trials.csv"), trials_csv(plan, results, options.seed));
+    write_file(folder.path("summary.csv"), summary_csv(plan, results));
+    bool drawn = true;
+    for (const Figure &figure : plan.figures) {
+        drawn = draw(folder, plan, figure, results) && drawn;
+        (void)std::printf("%s\n", text_table(plan, figure, results).c_str());
+    }
+    if (!drawn)
+        (void)std::fprintf(stderr, "grrl-experiment: no pictures: gnuplot (with pngcairo) is not "
+                                   "there or fails; run it on the .gp files\n");
+    write_file(folder.path("report.html"), report_html(options, folder, plan, results));
+    (void)std::printf("%s\n", folder.path("report.html").c_str());
+}
+
+int run(const Options &options, const Plan &plan)
+{
+    Folder folder(options, plan);
+    switch (run_tasks(options, plan, folder)) {
+    case JobsResult::FAILED:
+        return 1;
+    case JobsResult::INTERRUPTED:
+        (void)std::fprintf(stderr, "grrl-experiment: interrupted; the same command goes on\n");
+        return 130;
+    case JobsResult::DONE:
+        break;
+    }
+    publish(options, plan, folder);
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    Options options;
+    switch (parse_options(argc, argv, options)) {
+    case OptionsResult::DONE:
+        return 0;
+    case OptionsResult::BAD:
+        return 2;
+    case OptionsResult::RUN:
+        break;
+    }
+    try {
+        grrl_sim::Result<Plan> plan = make_plan(options);
+        if (!plan) {
+            (void)std::fprintf(stderr, "grrl-experiment: %s\n", plan.error.c_str());
+            return 2;
+        }
+        return run(options, *plan.value);
+    } catch (const std::exception &error) {
+        (void)std::fprintf(stderr, "grrl-experiment: %s\n", error.what());
+        return 1;
+    }
+}

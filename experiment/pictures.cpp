@@ -1,0 +1,128 @@
+#include "pictures.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "files.hpp"
+#include "results.hpp"
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+/* Lines and bands are means of so many trials on either side, fewer at the ends. */
+constexpr int neighbours = 2;
+
+/* A block for each curve: trial, its mean, and mean, low, high of the trials around it. */
+std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Experiments> &results)
+{
+    std::ostringstream text;
+    for (size_t c : figure.curves) {
+        text << "# " << curve_label(plan.curves[c], true) << "\n";
+        int trials = plan.curves[c].trials;
+        for (int trial = 1; trial <= trials; trial++) {
+            int reach = std::min({neighbours, trial - 1, trials - trial});
+            Estimate around = pushes(results[c], trial - reach, trial + reach);
+            text << trial << "\t" << pushes(results[c], trial, trial).mean << "\t" << around.mean
+                 << "\t" << around.low() << "\t" << around.high() << "\n";
+        }
+        text << "\n\n";
+    }
+    return text.str();
+}
+
+std::string quoted(const std::string &text)
+{
+    std::string result = "'";
+    for (char c : text)
+        result += c == '\'' ? std::string("''") : std::string(1, c == '\n' ? ' ' : c);
+    return result + "'";
+}
+
+std::string plot_command(const Plan &plan, const Figure &figure, const std::string &data)
+{
+    std::vector<std::string> parts;
+    auto index = [&data](size_t block) { return quoted(data) + " index " + std::to_string(block); };
+    for (size_t i = 0; i < figure.curves.size(); i++) {
+        std::string color = plan.curves[figure.curves[i]].policy->color;
+        parts.push_back(index(i) + " using 1:4:5 with filledcurves lc rgb '" + color + "' notitle");
+    }
+    bool transfer = false;
+    for (size_t c : figure.curves)
+        transfer = transfer || !plan.curves[c].pretrain.empty();
+    for (size_t i = 0; i < figure.curves.size(); i++) {
+        const Curve &curve = plan.curves[figure.curves[i]];
+        std::string color = curve.policy->color;
+        /* In a transfer, dashed is without experience. */
+        bool dashed = transfer && curve.policy->learns && curve.pretrain.empty();
+        parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
+                        "' notitle");
+        parts.push_back(index(i) + " using 1:3 with lines lw 2.5 dt " + (dashed ? "2" : "1") +
+                        " lc rgb '" + color + "' title " + quoted(curve_label(curve, false)));
+    }
+    std::string command = "plot ";
+    for (size_t i = 0; i < parts.size(); i++)
+        command += (i > 0 ? ", \\\n     " : "") + parts[i];
+    return command + "\n";
+}
+
+std::string script_of(const Plan &plan, const Figure &figure)
+{
+    return "# Lines: means of up to five trials with 95% intervals; points: means of one trial.\n"
+           "set terminal svg size 900,540 font 'Helvetica,Arial,sans-serif,15' "
+           "background '#ffffff'\n"
+           "set output " +
+           quoted(figure.name + ".svg") +
+           "\n"
+           "set border 3 lc rgb '#555555'\n"
+           "set tics nomirror out tc rgb '#333333'\n"
+           "set grid y lc rgb '#e6e6e6' lt 1\n"
+           "set title " +
+           quoted(figure.title) +
+           " noenhanced tc rgb '#222222'\n"
+           "set xlabel 'trial' tc rgb '#222222'\n"
+           "set ylabel 'pushes until the structure is known' tc rgb '#222222'\n"
+           "set key top right reverse Left samplen 2 spacing 1.3 tc rgb '#222222' noenhanced\n"
+           "set yrange [0:*]\n"
+           "set style fill transparent solid 0.18 noborder\n" +
+           plot_command(plan, figure, figure.name + ".tsv") +
+           "set terminal pngcairo size 1200,720 font 'Helvetica,15'\n"
+           "set output " +
+           quoted(figure.name + ".png") + "\nreplot\n";
+}
+
+bool run_gnuplot(const std::string &folder, const std::string &script)
+{
+    (void)std::fflush(nullptr);
+    pid_t pid = fork();
+    if (pid == 0) {
+        int none = open("/dev/null", O_RDWR);
+        if (none >= 0 && chdir(folder.c_str()) == 0) {
+            (void)dup2(none, STDERR_FILENO);
+            (void)execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char *>(nullptr));
+        }
+        _exit(127);
+    }
+    int status = 1;
+    return pid > 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) &&
+           WEXITSTATUS(status) == 0;
+}
+
+} // namespace
+
+bool draw(const Folder &folder, const Plan &plan, const Figure &figure,
+          const std::vector<Experiments> &results)
+{
+    write_file(folder.path(figure.name + ".tsv"), data_of(plan, figure, results));
+    write_file(folder.path(figure.name + ".gp"), script_of(plan, figure));
+    return run_gnuplot(folder.path(""), figure.name + ".gp");
+}
+
+} // namespace grrl_experiment

@@ -1,0 +1,86 @@
+#include "progress.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+constexpr double terminal_every_s = 0.3;
+constexpr double lines_every_s = 10.0;
+constexpr int bar_width = 24;
+
+bool is_terminal()
+{
+    const char *term = std::getenv("TERM");
+    return isatty(STDERR_FILENO) == 1 && term != nullptr && std::strcmp(term, "dumb") != 0;
+}
+
+} // namespace
+
+Progress::Progress(int64_t trials, int64_t experiments)
+    : trials_(trials), experiments_(experiments), terminal_(is_terminal()),
+      start_(std::chrono::steady_clock::now())
+{
+}
+
+void Progress::trial(int pushes)
+{
+    trials_done_++;
+    pushes_ += pushes;
+}
+
+double Progress::elapsed_s() const
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+std::string Progress::line() const
+{
+    double share =
+        trials_ > 0 ? static_cast<double>(trials_done_) / static_cast<double>(trials_) : 1.0;
+    std::string bar(static_cast<size_t>(std::min(share, 1.0) * bar_width), '#');
+    bar.resize(bar_width, '.');
+    double elapsed = elapsed_s();
+    char left[40] = "?";
+    if (trials_done_ > 0) {
+        long seconds = static_cast<long>(elapsed * (1.0 - share) / share + 0.5);
+        (void)std::snprintf(left, sizeof left, "%ld:%02ld", seconds / 60, seconds % 60);
+    }
+    char text[160];
+    (void)std::snprintf(text, sizeof text,
+                        "[%s] %3.0f%%  %lld of %lld experiments, %s left, %.0f pushes/s",
+                        bar.c_str(), 100.0 * share, static_cast<long long>(experiments_done_),
+                        static_cast<long long>(experiments_), left,
+                        static_cast<double>(pushes_) / std::max(elapsed, 0.001));
+    return text;
+}
+
+void Progress::print()
+{
+    shown_s_ = elapsed_s();
+    (void)std::fprintf(stderr, terminal_ ? "\r%s\033[K" : "%s\n", line().c_str());
+    (void)std::fflush(stderr);
+}
+
+void Progress::show()
+{
+    if (elapsed_s() - shown_s_ >= (terminal_ ? terminal_every_s : lines_every_s))
+        print();
+}
+
+void Progress::finish()
+{
+    print();
+    if (terminal_)
+        (void)std::fputc('\n', stderr);
+}
+
+} // namespace grrl_experiment

@@ -1,0 +1,42 @@
+/* progress.hpp: a bar with the time left on a terminal, a line now and then elsewhere. */
+#ifndef GRRL_EXPERIMENT_PROGRESS_HPP
+#define GRRL_EXPERIMENT_PROGRESS_HPP
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace grrl_experiment
+{
+
+class Progress
+{
+public:
+    /* trials: to be done, over all experiments. */
+    Progress(int64_t trials, int64_t experiments);
+
+    void trial(int pushes);
+    void experiment() { experiments_done_++; }
+    void show();   /* if it is time to */
+    void finish(); /* the last state, and the line is over */
+
+    int64_t pushes() const { return pushes_; }
+    double elapsed_s() const;
+
+private:
+    std::string line() const;
+    void print();
+
+    int64_t trials_;
+    int64_t experiments_;
+    int64_t trials_done_ = 0;
+    int64_t experiments_done_ = 0;
+    int64_t pushes_ = 0;
+    bool terminal_;
+    double shown_s_ = 0.0;
+    std::chrono::steady_clock::time_point start_;
+};
+
+} // namespace grrl_experiment
+
+#endif

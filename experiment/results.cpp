@@ -1,0 +1,149 @@
+#include "results.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+namespace grrl_experiment
+{
+
+namespace
+{
+
+std::string csv_field(const std::string &text)
+{
+    if (text.find_first_of(",\"\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (char c : text)
+        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+std::string curve_fields(const Curve &curve)
+{
+    return csv_field(curve.object) + "," + curve.policy->name + "," +
+           csv_field(curve.pretrain_text());
+}
+
+std::string number(double value)
+{
+    char text[40];
+    (void)std::snprintf(text, sizeof text, "%.3f", value);
+    return text;
+}
+
+std::string summary_row(const Curve &curve, const Experiments &experiments, const Range &range)
+{
+    Estimate mean = pushes(experiments, range.first, range.last);
+    bool interval = mean.half >= 0.0;
+    return curve_fields(curve) + "," + range.label + "," + std::to_string(range.first) + "," +
+           std::to_string(range.last) + "," + std::to_string(mean.n) + "," + number(mean.mean) +
+           "," + (interval ? number(mean.low()) : "") + "," +
+           (interval ? number(mean.high()) : "") + "," +
+           number(capped(experiments, range.first, range.last)) + "\n";
+}
+
+} // namespace
+
+uint64_t experiment_seed(uint64_t seed, int experiment)
+{
+    return 1000 * seed + static_cast<uint64_t>(experiment);
+}
+
+uint64_t pretrain_seed(uint64_t experiment_seed)
+{
+    return experiment_seed + UINT64_C(1000000000000000);
+}
+
+std::string trials_csv(const Plan &plan, const std::vector<Experiments> &results, uint64_t seed)
+{
+    std::ostringstream text;
+    text << "object,policy,pretrain,experiment,seed,trial,pushes,outcome,wrong_joints\n";
+    for (size_t c = 0; c < plan.curves.size(); c++) {
+        int experiment = 0;
+        for (const Trials &trials : results[c]) {
+            experiment++;
+            for (const TrialRow &row : trials)
+                text << curve_fields(plan.curves[c]) << "," << experiment << ","
+                     << experiment_seed(seed, experiment) << "," << row.trial << "," << row.pushes
+                     << "," << (row.discovered ? "discovered" : "capped") << "," << row.wrong_joints
+                     << "\n";
+        }
+    }
+    return text.str();
+}
+
+std::string summary_csv(const Plan &plan, const std::vector<Experiments> &results)
+{
+    std::string text =
+        "object,policy,pretrain,trials,first,last,experiments,mean,low,high,capped\n";
+    for (size_t c = 0; c < plan.curves.size(); c++) {
+        const Curve &curve = plan.curves[c];
+        for (const Range &range : ranges(curve.trials))
+            text += summary_row(curve, results[c], range);
+        for (int trial = 1; trial <= curve.trials; trial++)
+            text += summary_row(curve, results[c], {trial, trial, std::to_string(trial)});
+    }
+    return text;
+}
+
+std::string curve_label(const Curve &curve, bool with_object)
+{
+    std::string label = with_object ? curve.object + " " : "";
+    label += curve.policy->name;
+    if (!curve.pretrain.empty())
+        label += " after " + curve.pretrain_text();
+    return label;
+}
+
+std::string estimate_text(const Estimate &estimate, const char *plus_minus)
+{
+    char text[60];
+    if (estimate.half < 0.0)
+        (void)std::snprintf(text, sizeof text, "%.1f", estimate.mean);
+    else
+        (void)std::snprintf(text, sizeof text, "%.1f %s %.1f", estimate.mean, plus_minus,
+                            estimate.half);
+    return text;
+}
+
+std::string text_table(const Plan &plan, const Figure &figure,
+                       const std::vector<Experiments> &results)
+{
+    std::ostringstream text;
+    text << figure.title << "\n";
+    size_t width = 8;
+    for (size_t c : figure.curves)
+        width = std::max(width, curve_label(plan.curves[c], false).size());
+    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials);
+    auto cell = [&text](const std::string &s, size_t size) {
+        text << s << std::string(size > s.size() ? size - s.size() : 0, ' ');
+    };
+    text << "  ";
+    cell("trials", width + 2);
+    for (const Range &column : columns)
+        cell(column.label, 14);
+    text << "capped  wrong joints\n";
+    for (size_t c : figure.curves) {
+        text << "  ";
+        cell(curve_label(plan.curves[c], false), width + 2);
+        for (const Range &column : columns)
+            cell(estimate_text(pushes(results[c], column.first, column.last), "+-"), 14);
+        double wrong = 0.0;
+        double trials = 0.0;
+        for (const Trials &experiment : results[c])
+            for (const TrialRow &row : experiment) {
+                wrong += row.wrong_joints;
+                trials += 1.0;
+            }
+        char rest[40];
+        (void)std::snprintf(rest, sizeof rest, "%5.1f%%  %.2f",
+                            100.0 * capped(results[c], 1, plan.curves[c].trials),
+                            wrong / std::max(trials, 1.0));
+        text << rest << "\n";
+    }
+    return text.str();
+}
+
+} // namespace grrl_experiment

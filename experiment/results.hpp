@@ -1,0 +1,34 @@
+/* results.hpp: trials.csv, summary.csv and the table on the terminal. */
+#ifndef GRRL_EXPERIMENT_RESULTS_HPP
+#define GRRL_EXPERIMENT_RESULTS_HPP
+
+#include <string>
+#include <vector>
+
+#include "plan.hpp"
+#include "statistics.hpp"
+
+namespace grrl_experiment
+{
+
+/* Of experiment 1, 2, ..: of the world and of the policy; in pretraining another one. */
+uint64_t experiment_seed(uint64_t seed, int experiment);
+uint64_t pretrain_seed(uint64_t experiment_seed);
+
+/* results[i] belongs to curve i of the plan. */
+std::string trials_csv(const Plan &plan, const std::vector<Experiments> &results, uint64_t seed);
+std::string summary_csv(const Plan &plan, const std::vector<Experiments> &results);
+
+/* "paper", "paper after RRRRR:50", with the object before it if wanted. */
+std::string curve_label(const Curve &curve, bool with_object);
+
+/* "7.2 +- 0.4" */
+std::string estimate_text(const Estimate &estimate, const char *plus_minus);
+
+/* A row for each curve of a figure. */
+std::string text_table(const Plan &plan, const Figure &figure,
+                       const std::vector<Experiments> &results);
+
+} // namespace grrl_experiment
+
+#endif

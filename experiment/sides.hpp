@@ -1,0 +1,98 @@
+/*
+ * sides.hpp: the two ends of the wire, in one process or in two.
+ *
+ * Each speaks LCM on an lcm_t of the caller. Call lcm_handle and tick in turns until finished.
+ */
+#ifndef GRRL_EXPERIMENT_SIDES_HPP
+#define GRRL_EXPERIMENT_SIDES_HPP
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "agent_c.hpp"
+#include "node.hpp"
+#include "policies.hpp"
+
+namespace grrl_experiment
+{
+
+using Bytes = std::vector<uint8_t>; /* experiences as grrl_experience_save writes them */
+using Clock = std::function<int64_t()>;
+
+struct TrialRow {
+    int trial = 0; /* from 1 */
+    int pushes = 0;
+    bool discovered = false; /* or capped */
+    int wrong_joints = 0;    /* ever believed in the trial though the object has none such */
+};
+
+/* An object met for a number of trials. */
+struct Phase {
+    grrl_sim::ObjectSpec object;
+    const Policy *policy = nullptr;
+    int trials = 1;
+    int cap = 100;
+    uint64_t seed = 1;
+    double noise_m = 0.0007; /* of a tracked point; the agent knows it */
+};
+
+/* Agent core, its memory, and the chooser if the policy has one. */
+class AgentSide
+{
+public:
+    /* node: as for Policy. Throws std::runtime_error: LCM refuses, or experience is none. */
+    AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim::Node *node,
+              const Bytes &experience);
+    ~AgentSide();
+    AgentSide(const AgentSide &) = delete;
+    AgentSide &operator=(const AgentSide &) = delete;
+
+    void tick() { grrl_agent_tick(agent_.get()); }
+    bool finished() const { return grrl_agent_finished(agent_.get()); }
+    Bytes experience() const;
+
+private:
+    static int64_t now_us(void *context);
+    static void on_event(void *context, const grrl_agent_event *event);
+    static grrl_status choose(void *context, grrl_learner *learner, grrl_decision *decision);
+
+    Clock clock_;
+    std::unique_ptr<Chooser> chooser_;
+    std::vector<grrl_experience_state> states_;
+    std::vector<grrl_experience> experiences_;
+    std::unique_ptr<grrl_agent> agent_;
+};
+
+/* Simulator node, and the count of wrong joints in the models it receives. */
+class WorldSide
+{
+public:
+    using OnTrial = std::function<void(const TrialRow &)>;
+
+    WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_trial);
+
+    void tick() { node_->tick(); }
+    bool finished() const { return node_->finished(); }
+    int64_t agent_silent_us() const { return node_->agent_silent_us(); }
+    const grrl_sim::Node &node() const { return *node_; }
+
+private:
+    void on_message(const char *channel, const void *data, uint32_t size);
+    void on_trial(const grrl_sim::TrialResult &result);
+
+    OnTrial on_trial_;
+    int trials_ = 0;
+    int32_t trial_id_ = 0;
+    int32_t cmd_seq_ = -1;                      /* of the newest model measured */
+    std::set<std::tuple<int, int, int>> wrong_; /* numbers of the links, type */
+    std::unique_ptr<grrl_wire_model> model_;
+    std::unique_ptr<grrl_sim::Node> node_;
+};
+
+} // namespace grrl_experiment
+
+#endif

@@ -1,0 +1,51 @@
+/*
+ * statistics.hpp: means over experiments with their intervals.
+ *
+ * Each experiment gives one number, its own mean over the trials in question; its trials are not
+ * independent of one another. The interval is t(0.975, n - 1) s / sqrt(n) to either side.
+ */
+#ifndef GRRL_EXPERIMENT_STATISTICS_HPP
+#define GRRL_EXPERIMENT_STATISTICS_HPP
+
+#include <string>
+#include <vector>
+
+#include "sides.hpp"
+
+namespace grrl_experiment
+{
+
+/* The trials of one experiment, in order; and of all experiments of a curve. */
+using Trials = std::vector<TrialRow>;
+using Experiments = std::vector<Trials>;
+
+struct Estimate {
+    int n = 0;
+    double mean = 0.0;
+    double half = -1.0; /* of the interval's width; negative: one experiment has none */
+    double low() const { return half < 0.0 ? mean : mean - half; }
+    double high() const { return half < 0.0 ? mean : mean + half; }
+};
+
+Estimate estimate(const std::vector<double> &values);
+
+/* Pushes over the trials first .. last, counted from 1. */
+Estimate pushes(const Experiments &experiments, int first, int last);
+
+/* The share of trials first .. last that ended at the cap. */
+double capped(const Experiments &experiments, int first, int last);
+
+/* The two-sided 95% quantile of Student's t. */
+double t_quantile(int degrees);
+
+/* The ranges of trials that tables show: first five, 6-10, 11-20, 21-40, last ten, all. */
+struct Range {
+    int first;
+    int last;
+    std::string label;
+};
+std::vector<Range> ranges(int trials);
+
+} // namespace grrl_experiment
+
+#endif

@@ -1,0 +1,197 @@
+/* grrl-record OBJECT TRIALS SEED RECORDING: a learning run of the simulated world and the
+ * controller in one process, as the packets the controller was given. */
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "supervisor.hpp"
+#include "world.hpp"
+
+/* A struct and a function of the library share the name grrl_canonical: fine in C. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+extern "C" {
+#include "controller.h"
+}
+#pragma GCC diagnostic pop
+
+using namespace grrl_sim;
+
+namespace
+{
+
+constexpr int most_pushes = 100;
+constexpr int rest_frames = 10;
+
+struct Run {
+    std::FILE *file = nullptr;
+    std::unique_ptr<onboard_controller> controller = std::make_unique<onboard_controller>();
+    onboard_packet packet{};
+    Frame frame;
+    onboard_points points{};
+    bool failed = false;
+};
+
+void write(Run &run)
+{
+    const onboard_packet &packet = run.packet;
+    uint8_t head[3] = {packet.type, static_cast<uint8_t>(packet.n),
+                       static_cast<uint8_t>(packet.n >> 8)};
+    if (packet.bad || std::fwrite(head, 1, sizeof head, run.file) != sizeof head ||
+        std::fwrite(packet.bytes, 1, packet.n, run.file) != packet.n)
+        run.failed = true;
+}
+
+/* Whether the learner could do it. */
+bool send(Run &run)
+{
+    write(run);
+    if (onboard_controller_take(run.controller.get(), &run.packet) != GRRL_OK)
+        run.failed = true;
+    return run.controller->answer.bytes[0] == 0;
+}
+
+bool send(Run &run, onboard_packet_type type, uint64_t value = 0, unsigned bytes = 0)
+{
+    onboard_packet_begin(&run.packet, type);
+    onboard_put(&run.packet, value, bytes);
+    return send(run);
+}
+
+/* For whoever replays it: what it should have come to by now. */
+void expect(Run &run)
+{
+    const onboard_hashes &hashes = run.controller->hashes;
+    onboard_packet_begin(&run.packet, ONBOARD_EXPECT);
+    for (uint64_t hash : {hashes.models, hashes.decisions, hashes.lessons})
+        onboard_put(&run.packet, hash, 8);
+    write(run);
+}
+
+void open(Run &run, uint64_t seed)
+{
+    onboard_controller_init(run.controller.get(), nullptr);
+    onboard_packet_begin(&run.packet, ONBOARD_OPEN);
+    onboard_put(&run.packet, GRRL_MAX_LINKS, 1);
+    onboard_put(&run.packet, GRRL_MAX_FEATURES, 2);
+    onboard_put(&run.packet, GRRL_MAX_KEYFRAMES, 1);
+    onboard_put(&run.packet, ONBOARD_STATES, 2);
+    onboard_put(&run.packet, ONBOARD_EXPERIENCES, 2);
+    onboard_put(&run.packet, seed, 8);
+    send(run);
+}
+
+void see(Run &run, World &world, bool pushing)
+{
+    world.observe(run.frame);
+    uint32_t n = 0;
+    for (const TrackedFeature &feature : run.frame.features) {
+        if (n == GRRL_MAX_FEATURES)
+            break;
+        run.points.id[n] = static_cast<int32_t>(feature.id);
+        run.points.x_m[n] = static_cast<float>(feature.x_m);
+        run.points.y_m[n] = static_cast<float>(feature.y_m);
+        n++;
+    }
+    grrl_frame frame = {n, run.points.id, run.points.x_m, run.points.y_m};
+    onboard_put_frame(&run.packet, &frame, pushing);
+    send(run);
+}
+
+void settle(Run &run, World &world)
+{
+    for (int i = 0; i < rest_frames; i++)
+        see(run, world, false);
+    send(run, ONBOARD_PERCEIVE);
+}
+
+/* What the learner just decided, as the robot takes it. A refused push moves nothing. */
+void push(Run &run, World &world)
+{
+    onboard_packet &answer = run.controller->answer;
+    answer.at = 1 + 9 + 16 + 2; /* after status, choice and body number: see packet.c */
+    PushCommand command;
+    auto next = [&answer] { return static_cast<double>(onboard_get_float(&answer)); };
+    command.start_m.x = next();
+    command.start_m.y = next();
+    command.end_m.x = next();
+    command.end_m.y = next();
+    command.travel_m = next();
+    command.speed_m_s = next();
+    command.force_limit_n = next();
+    command.timeout_s = next();
+    if (!onboard_packet_used_up(&answer))
+        run.failed = true;
+    if (!world.begin_push(command).empty())
+        return;
+    bool moving = true;
+    while (moving) {
+        moving = world.step_frame();
+        see(run, world, true);
+    }
+}
+
+/* The n-th trial of a seed has its own pose, noise and friction, as in grrl-sim. */
+uint64_t trial_seed(uint64_t seed, uint32_t trial)
+{
+    grrl_random random;
+    grrl_random_init(&random, seed, trial);
+    uint64_t high = grrl_random_next(&random);
+    return high << 32 | grrl_random_next(&random);
+}
+
+int trial(Run &run, const ObjectSpec &object, uint64_t seed, uint32_t number)
+{
+    World world(object, WorldParams{}, trial_seed(seed, number));
+    Supervisor supervisor(object.truth);
+    send(run, ONBOARD_TRIAL, number, 4);
+    settle(run, world);
+    int pushes = 0;
+    bool found = false;
+    while (!run.failed && !found && pushes < most_pushes) {
+        if (!send(run, ONBOARD_CHOOSE))
+            break; /* no link is seen that could be pushed */
+        push(run, world);
+        pushes++;
+        settle(run, world);
+        grrl_graph believed;
+        grrl_model_graph(grrl_perception_model(&run.controller->learner.perception), &believed,
+                         nullptr, nullptr);
+        found = supervisor.judge(believed).correct;
+        send(run, ONBOARD_LEARN, found ? 1 : 0, 1);
+        expect(run);
+    }
+    return pushes;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc != 5) {
+        (void)std::fprintf(stderr, "usage: grrl-record OBJECT TRIALS SEED RECORDING\n");
+        return 2;
+    }
+    Result<ObjectSpec> object = object_from_text(argv[1]);
+    int trials = std::atoi(argv[2]);
+    uint64_t seed = std::strtoull(argv[3], nullptr, 10);
+    Run run;
+    if (object)
+        run.file = std::fopen(argv[4], "wb");
+    if (run.file == nullptr) {
+        std::string why = object ? std::string(argv[4]) + ": cannot be written" : object.error;
+        (void)std::fprintf(stderr, "grrl-record: %s\n", why.c_str());
+        return 1;
+    }
+    open(run, seed);
+    (void)std::printf("pushes");
+    for (int i = 1; i <= trials && !run.failed; i++)
+        (void)std::printf(" %d", trial(run, *object.value, seed, static_cast<uint32_t>(i)));
+    (void)std::printf("\n");
+    if (!send(run, ONBOARD_CLOSE) || std::fclose(run.file) != 0 || run.failed) {
+        (void)std::fprintf(stderr, "grrl-record: %s is not complete\n", argv[4]);
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,42 @@
+/* grrl-replay RECORDING: the hashes of a recorded run on this machine. */
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "replay.h"
+
+static struct onboard_controller controller;
+static struct onboard_packet packet;
+
+static int read_file(void *context, void *bytes, size_t size)
+{
+    return fread(bytes, 1, size, context) == size ? 0 : -1;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        (void)fprintf(stderr, "usage: grrl-replay RECORDING\n");
+        return 2;
+    }
+    FILE *file = fopen(argv[1], "rb");
+    if (file == NULL) {
+        (void)fprintf(stderr, "grrl-replay: %s: cannot be opened\n", argv[1]);
+        return 1;
+    }
+    struct onboard_source source = {file, read_file};
+    struct onboard_progress progress;
+    onboard_controller_init(&controller, NULL);
+    enum grrl_status status = onboard_replay(&controller, &source, &packet, &progress);
+    (void)fclose(file);
+    if (status != GRRL_OK) {
+        (void)fprintf(stderr,
+                      "grrl-replay: packet %" PRIu32 " (trial %" PRIu32 ", push %" PRIu32
+                      " of the run): %s\n",
+                      progress.packets, progress.trials, progress.pushes, grrl_status_text(status));
+    }
+    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
+                 "\nexperiences %016" PRIx64 "\n",
+                 controller.hashes.models, controller.hashes.decisions, controller.hashes.lessons,
+                 controller.store_hash);
+    return status == GRRL_OK ? 0 : 1;
+}

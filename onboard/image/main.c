@@ -1,0 +1,146 @@
+/*
+ * The image: replays a recording and tells its hashes and what it cost, a name and numbers a line.
+ * Arguments: the recording's path, or "fault" and the name of a fault to provoke.
+ */
+#include <string.h>
+
+#include "machine.h"
+#include "replay.h"
+
+static struct onboard_controller controller;
+static struct onboard_packet packet;
+static char arguments[512];
+static struct {
+    intptr_t file;
+    size_t n, at;
+    uint8_t bytes[4096];
+} input;
+
+static int read_input(void *context, void *bytes, size_t size)
+{
+    (void)context;
+    uint8_t *to = bytes;
+    while (size > 0) {
+        if (input.at == input.n) {
+            input.n = machine_read(input.file, input.bytes, sizeof input.bytes);
+            input.at = 0;
+            if (input.n == 0) {
+                return -1;
+            }
+        }
+        size_t n = input.n - input.at < size ? input.n - input.at : size;
+        memcpy(to, input.bytes + input.at, n);
+        input.at += n;
+        to += n;
+        size -= n;
+    }
+    return 0;
+}
+
+static void write_hash(const char *name, uint64_t hash)
+{
+    char digits[20] = " 0123456789abcdef\n";
+    for (int i = 0; i < 16; i++) {
+        digits[16 - i] = "0123456789abcdef"[hash >> (4 * i) & 15];
+    }
+    machine_write(name);
+    machine_write(digits);
+}
+
+static void write_number(uint64_t number)
+{
+    char digits[24];
+    int at = 23;
+    digits[at] = '\0';
+    do {
+        digits[--at] = (char)('0' + number % 10);
+        number /= 10;
+    } while (number > 0);
+    digits[--at] = ' ';
+    machine_write(digits + at);
+}
+
+static void write_line(const char *name, uint64_t number)
+{
+    machine_write(name);
+    write_number(number);
+    machine_write("\n");
+}
+
+/* How often, mean and most instructions. */
+static void write_costs(void)
+{
+    static const char *const names[ONBOARD_STEPS] = {"frame", "perceive", "choose", "learn"};
+    for (int i = 0; i < ONBOARD_STEPS; i++) {
+        const struct onboard_cost *cost = &controller.cost[i];
+        machine_write("cost ");
+        machine_write(names[i]);
+        write_number(cost->n);
+        write_number(machine_instructions(cost->sum) / (cost->n > 0 ? cost->n : 1));
+        write_number(machine_instructions(cost->most));
+        machine_write("\n");
+    }
+}
+
+static void write_memory(void)
+{
+    write_line("ram learner", sizeof controller.learner);
+    write_line("ram states", sizeof controller.states);
+    write_line("ram experiences", sizeof controller.experiences);
+    write_line("ram terms",
+               sizeof controller.terms + sizeof controller.nodes + sizeof controller.text);
+    write_line("ram packets", sizeof controller.points + sizeof controller.answer + sizeof packet);
+    write_line("ram input", sizeof input + sizeof arguments);
+    write_line("ram stack", machine_stack_size());
+    write_line("stack painted", machine_stack_used());
+    write_line("used experiences", controller.learner.store.n_experiences);
+    write_line("used states", controller.learner.store.n_states);
+    write_line("used features", controller.learner.perception.counts.features_high);
+    write_line("used keyframes", controller.learner.perception.counts.keyframes_high);
+    write_line("evictions", controller.learner.store.evictions);
+}
+
+static int replay(const char *path)
+{
+    input.file = machine_open(path);
+    if (input.file < 0) {
+        machine_write("there is no such recording\n");
+        return EXIT_USAGE;
+    }
+    const struct onboard_source source = {NULL, read_input};
+    struct onboard_progress progress;
+    onboard_controller_init(&controller, machine_count);
+    enum grrl_status status = onboard_replay(&controller, &source, &packet, &progress);
+    write_line("packets", progress.packets);
+    write_line("trials", progress.trials);
+    write_line("pushes", progress.pushes);
+    write_hash("models", controller.hashes.models);
+    write_hash("decisions", controller.hashes.decisions);
+    write_hash("lessons", controller.hashes.lessons);
+    write_hash("experiences", controller.store_hash);
+    write_costs();
+    write_memory();
+    if (status != GRRL_OK) {
+        machine_write("stopped there: ");
+        machine_write(grrl_status_text(status));
+        machine_write("\n");
+    }
+    return status == GRRL_OK ? EXIT_FINE : EXIT_DIFFERS;
+}
+
+int main(void);
+
+int main(void)
+{
+    (void)machine_arguments(arguments, sizeof arguments);
+    const char *first = strchr(arguments, ' ');
+    if (first == NULL) {
+        return EXIT_USAGE;
+    }
+    first++;
+    if (strncmp(first, "fault ", 6) == 0) {
+        machine_provoke(first + 6);
+        return EXIT_FINE;
+    }
+    return replay(first);
+}

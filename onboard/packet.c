@@ -1,0 +1,169 @@
+#include "packet.h"
+
+#include <string.h>
+
+_Static_assert(ONBOARD_MAX_BYTES <= UINT16_MAX, "a length has 2 bytes");
+
+void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type)
+{
+    packet->type = (uint8_t)type;
+    packet->n = 0;
+    packet->at = 0;
+    packet->bad = false;
+}
+
+void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes)
+{
+    if (packet->n + bytes > ONBOARD_MAX_BYTES) {
+        packet->bad = true;
+        return;
+    }
+    for (unsigned i = 0; i < bytes; i++) {
+        packet->bytes[packet->n++] = (uint8_t)(value >> (8 * i));
+    }
+}
+
+void onboard_put_float(struct onboard_packet *packet, float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    onboard_put(packet, bits, 4);
+}
+
+uint64_t onboard_get(struct onboard_packet *packet, unsigned bytes)
+{
+    if (packet->at + bytes > packet->n) {
+        packet->bad = true;
+        return 0;
+    }
+    uint64_t value = 0;
+    for (unsigned i = 0; i < bytes; i++) {
+        value |= (uint64_t)packet->bytes[packet->at++] << (8 * i);
+    }
+    return value;
+}
+
+float onboard_get_float(struct onboard_packet *packet)
+{
+    uint32_t bits = (uint32_t)onboard_get(packet, 4);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+bool onboard_packet_used_up(const struct onboard_packet *packet)
+{
+    return !packet->bad && packet->at == packet->n;
+}
+
+void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing)
+{
+    onboard_packet_begin(packet, ONBOARD_FRAME);
+    onboard_put(packet, pushing, 1);
+    onboard_put(packet, frame->n, 2);
+    for (uint32_t i = 0; i < frame->n; i++) {
+        onboard_put(packet, (uint32_t)frame->id[i], 4);
+        onboard_put_float(packet, frame->x_m[i]);
+        onboard_put_float(packet, frame->y_m[i]);
+    }
+}
+
+bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *points,
+                       struct grrl_frame *frame, bool *pushing)
+{
+    *frame = (struct grrl_frame){.id = points->id, .x_m = points->x_m, .y_m = points->y_m};
+    *pushing = onboard_get(packet, 1) != 0;
+    uint32_t n = (uint32_t)onboard_get(packet, 2);
+    if (n > GRRL_MAX_FEATURES || packet->n != 3 + 12 * n) {
+        return false;
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        uint32_t id = (uint32_t)onboard_get(packet, 4);
+        memcpy(&points->id[i], &id, sizeof id);
+        points->x_m[i] = onboard_get_float(packet);
+        points->y_m[i] = onboard_get_float(packet);
+    }
+    frame->n = n;
+    return true;
+}
+
+static void put_vec2(struct onboard_packet *packet, struct grrl_vec2 v)
+{
+    onboard_put_float(packet, v.x);
+    onboard_put_float(packet, v.y);
+}
+
+static void put_joint(struct onboard_packet *packet, const struct grrl_joint *joint)
+{
+    onboard_put(packet, joint->a, 1);
+    onboard_put(packet, joint->b, 1);
+    onboard_put(packet, joint->type, 1);
+    onboard_put_float(packet, joint->probability);
+    onboard_put_float(packet, joint->p_revolute);
+    onboard_put_float(packet, joint->p_prismatic);
+    onboard_put_float(packet, joint->p_disconnected);
+    put_vec2(packet, joint->point_m);
+    for (int i = 0; i < 3; i++) {
+        onboard_put_float(packet, joint->point_cov_m2[i]);
+    }
+    put_vec2(packet, joint->axis);
+    onboard_put_float(packet, joint->axis_sd_rad);
+    onboard_put_float(packet, joint->lower);
+    onboard_put_float(packet, joint->upper);
+}
+
+void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model)
+{
+    onboard_put(packet, model->n_bodies, 1);
+    onboard_put(packet, model->n_joints, 1);
+    onboard_put(packet, model->n_features, 2);
+    for (int i = 0; i < model->n_bodies; i++) {
+        const struct grrl_body *body = &model->body[i];
+        onboard_put(packet, body->number, 2);
+        onboard_put(packet, body->n_features, 2);
+        put_vec2(packet, body->centroid_m);
+        put_vec2(packet, body->axis);
+        onboard_put_float(packet, body->length_m);
+        onboard_put_float(packet, body->width_m);
+        onboard_put(packet, body->properties, 8);
+    }
+    for (int i = 0; i < model->n_joints; i++) {
+        put_joint(packet, &model->joint[i]);
+    }
+    for (int i = 0; i < model->n_features; i++) {
+        onboard_put(packet, (uint32_t)model->feature_id[i], 4);
+        put_vec2(packet, model->feature_m[i]);
+        onboard_put(packet, model->feature_body[i], 1);
+    }
+}
+
+void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision)
+{
+    const struct grrl_choice *choice = &decision->choice;
+    onboard_put(packet, choice->link, 1);
+    onboard_put(packet, choice->direction, 1);
+    onboard_put(packet, choice->reason, 1);
+    onboard_put(packet, choice->from.experience, 2);
+    onboard_put(packet, choice->from.level, 1);
+    onboard_put(packet, choice->from.distance, 1);
+    onboard_put(packet, choice->from.dropped, 1);
+    onboard_put(packet, choice->from.stored_link, 1);
+    onboard_put_float(packet, choice->value);
+    onboard_put_float(packet, choice->lower);
+    onboard_put_float(packet, choice->upper);
+    onboard_put_float(packet, choice->phi);
+    onboard_put(packet, decision->body_number, 2);
+    put_vec2(packet, decision->push.start_m);
+    put_vec2(packet, decision->push.end_m);
+    onboard_put_float(packet, decision->push.travel_m);
+    onboard_put_float(packet, decision->push.speed_m_s);
+    onboard_put_float(packet, decision->push.force_n);
+    onboard_put_float(packet, decision->push.timeout_s);
+}
+
+void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson)
+{
+    onboard_put_float(packet, lesson->reward);
+    onboard_put_float(packet, lesson->target);
+    onboard_put(packet, lesson->experience, 2);
+}

@@ -1,0 +1,86 @@
+/*
+ * packet.h: what goes in and out of the controller, as bytes: little-endian, whatever the machine.
+ *
+ * A packet is a type, a length (2 bytes) and that many bytes. A recording is a row of packets; on
+ * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each but
+ * a frame is answered.
+ *
+ *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8)
+ *   TRIAL    number (4)
+ *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
+ *   PERCEIVE, CHOOSE, CLOSE    nothing
+ *   LEARN    ended (1)
+ *   EXPECT   the hashes so far of models, decisions and lessons (8 each): in recordings only
+ *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and then as written below
+ */
+#ifndef ONBOARD_PACKET_H
+#define ONBOARD_PACKET_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "grrl/learner.h"
+
+enum onboard_packet_type {
+    ONBOARD_OPEN = 1,
+    ONBOARD_TRIAL,
+    ONBOARD_FRAME,
+    ONBOARD_PERCEIVE,
+    ONBOARD_CHOOSE,
+    ONBOARD_LEARN,
+    ONBOARD_CLOSE,
+    ONBOARD_EXPECT,
+    ONBOARD_DONE = 64,
+    ONBOARD_MODEL,
+    ONBOARD_DECISION,
+    ONBOARD_LESSON,
+    ONBOARD_STORE
+};
+
+/* The most bytes of a packet: a model with everything in it, or a frame. */
+#define ONBOARD_MODEL_BYTES                                                                        \
+    (5 + 36 * GRRL_MAX_LINKS + 59 * GRRL_MAX_JOINTS + 13 * GRRL_MAX_FEATURES)
+#define ONBOARD_FRAME_BYTES (3 + 12 * GRRL_MAX_FEATURES)
+#define ONBOARD_MAX_BYTES                                                                          \
+    (ONBOARD_MODEL_BYTES > ONBOARD_FRAME_BYTES ? ONBOARD_MODEL_BYTES : ONBOARD_FRAME_BYTES)
+
+struct onboard_packet {
+    uint8_t type;
+    uint16_t n;
+    bool bad; /* written beyond the end, or read beyond it */
+    uint16_t at;
+    uint8_t bytes[ONBOARD_MAX_BYTES];
+};
+
+/* Points of one frame, where the library's frame refers to. */
+struct onboard_points {
+    int32_t id[GRRL_MAX_FEATURES];
+    float x_m[GRRL_MAX_FEATURES];
+    float y_m[GRRL_MAX_FEATURES];
+};
+
+/* Begins to write a packet. */
+void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type);
+
+void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes);
+void onboard_put_float(struct onboard_packet *packet, float value);
+
+/* Reads on from packet->at; 0, and bad, beyond the end. */
+uint64_t onboard_get(struct onboard_packet *packet, unsigned bytes);
+float onboard_get_float(struct onboard_packet *packet);
+
+/* Whether all was read and nothing beyond. */
+bool onboard_packet_used_up(const struct onboard_packet *packet);
+
+void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing);
+
+/* False, and an empty frame, for a packet that is none or holds more points than there is room. */
+bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *points,
+                       struct grrl_frame *frame, bool *pushing);
+
+void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model);
+void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision);
+void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson);
+
+#endif

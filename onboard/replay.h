@@ -1,0 +1,29 @@
+/* replay.h: a recorded run, packet after packet, through a controller. */
+#ifndef ONBOARD_REPLAY_H
+#define ONBOARD_REPLAY_H
+
+#include "controller.h"
+
+/* Returns 0 when all `size` bytes were read. */
+struct onboard_source {
+    void *context;
+    int (*read)(void *context, void *bytes, size_t size);
+};
+
+/* How far a replay came; after a failure, where it ended. */
+struct onboard_progress {
+    uint32_t packets;
+    uint32_t trials;
+    uint32_t pushes;
+};
+
+/*
+ * Runs from OPEN to CLOSE. GRRL_ERR_IO: the recording ends early; GRRL_ERR_CORRUPT: the controller
+ * came to other results than the recorder; else as onboard_controller_take.
+ */
+GRRL_MUST_USE enum grrl_status onboard_replay(struct onboard_controller *controller,
+                                              const struct onboard_source *source,
+                                              struct onboard_packet *packet,
+                                              struct onboard_progress *progress);
+
+#endif

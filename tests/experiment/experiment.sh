@@ -1,0 +1,142 @@
+#!/bin/bash
+# experiment.sh GRRL-EXPERIMENT CASE: the program as it is called. Exit status 77: skipped.
+set -u
+BIN=$1 CASE=$2
+export LC_ALL=C
+
+if [ "$CASE" = transports ] && [ -z "${GRRL_E2E_NETWORK:-}" ]; then
+    export GRRL_E2E_NETWORK=1
+    setup='ip link set lo up && ip route add 224.0.0.0/4 dev lo'
+    if unshare -rn sh -c "$setup" 2>/dev/null; then
+        exec unshare -rn sh -c "$setup && exec bash \"\$0\" \"\$@\"" "$0" "$@"
+    elif ! ip route get 239.255.76.67 2>/dev/null | grep -q 'dev lo'; then
+        echo "skipped: no multicast route on lo, and no leave to make a network namespace"
+        exit 77
+    fi
+fi
+
+WORK=$(mktemp -d)
+trap 'rm -rf "$WORK"' EXIT
+cd "$WORK" || exit 1
+
+fail() {
+    echo "FAILED: $*"
+    cat output.txt
+    exit 1
+}
+
+# run DIR OPTION..: must end with 0
+run() {
+    local out=$1
+    shift
+    "$BIN" --out "$out" "$@" >output.txt 2>&1 || fail "--out $out $* ended with $?"
+}
+
+# same DIR DIR: both tables
+same() {
+    cmp "$1/trials.csv" "$2/trials.csv" || fail "trials of $1 and $2 differ"
+    cmp "$1/summary.csv" "$2/summary.csv" || fail "summaries of $1 and $2 differ"
+}
+
+# refused PATTERN OPTION..: exit status 2 and a message
+refused() {
+    local pattern=$1 status=0
+    shift
+    "$BIN" "$@" >output.txt 2>&1 || status=$?
+    [ "$status" -eq 2 ] || fail "$* ended with $status"
+    grep -q -e "$pattern" output.txt || fail "$*: no '$pattern'"
+}
+
+case $CASE in
+jobs)
+    options=(--object RR --policy random,learn,rule,motion,clairvoyant --trials 2 --experiments 3)
+    run one "${options[@]}" --jobs 1
+    run two "${options[@]}" --jobs 2
+    same one two
+    [ "$(wc -l <one/trials.csv)" -eq 31 ] || fail "not 30 trials and a header"
+    head -1 one/trials.csv | grep -qx \
+        'object,policy,pretrain,experiment,seed,trial,pushes,outcome,wrong_joints' || fail header
+    grep -qx 'RR,rule,none,2,1002,1,[0-9]*,discovered,[0-9]*' one/trials.csv || fail row
+    grep -q '^RR,learn,none,1-2,1,2,3,' one/summary.csv || fail summary
+    grep -q '<table>' one/report.html || fail report
+    run other "${options[@]}" --seed 2
+    ! cmp -s one/trials.csv other/trials.csv || fail "another seed changed nothing"
+    ;;
+figure)
+    run figure --figure 4b --policy paper,random --trials 3 --experiments 2
+    grep -q '^RRRR,paper,RRRRR:50,2,1002,3,' figure/trials.csv || fail "no pretrained curve"
+    [ "$(wc -l <figure/trials.csv)" -eq 19 ] || fail "not 3 curves of 2 x 3 trials"
+    if command -v gnuplot >/dev/null; then
+        grep -q '<svg' figure/figure-4b.svg || fail "no SVG"
+        [ "$(head -c 4 figure/figure-4b.png | tail -c 3)" = PNG ] || fail "no PNG"
+        grep -q 'data:image/svg+xml;base64,' figure/report.html || fail "no picture in the report"
+    fi
+    ;;
+transports)
+    options=(--object PR --policy random,learn,rule --pretrain R:1 --trials 2 --experiments 2)
+    run memq "${options[@]}" --transport memq
+    run udpm "${options[@]}" --transport udpm
+    same memq udpm
+    ;;
+killed)
+    options=(--object RPR --policy random,learn --trials 3 --experiments 6)
+    run whole "${options[@]}"
+    for how in KILL TERM; do
+        rm -rf parts
+        "$BIN" --out parts "${options[@]}" --jobs 1 >output.txt 2>&1 &
+        pid=$!
+        for ((i = 0; i < 600; i++)); do
+            [ -e parts/experiments/curve-01-0001.csv ] && break
+            sleep 0.01
+        done
+        kill -$how "$pid"
+        status=0
+        wait "$pid" 2>/dev/null || status=$?
+        [ "$how" = KILL ] || [ "$status" -eq 130 ] || fail "SIGTERM: exit status $status"
+        [ ! -e parts/trials.csv ] || fail "it ended before it was killed"
+        run parts "${options[@]}"
+        grep -q 'of 12 experiments are there already' output.txt || fail "nothing was kept"
+        same whole parts
+    done
+    echo rubbish >parts/experiments/curve-02-0003.csv # a broken one is done again
+    run parts "${options[@]}"
+    grep -q '11 of 12 experiments are there already' output.txt || fail "rubbish was believed"
+    same whole parts
+    run parts "${options[@]}" --experiments 2 # fewer are part of the same
+    grep -q '4 of 4 experiments are there already' output.txt || fail "repeated"
+    status=0
+    "$BIN" --out parts "${options[@]}" --seed 9 >output.txt 2>&1 || status=$?
+    [ "$status" -eq 1 ] || fail "other settings: exit status $status"
+    grep -q "'seed 1' there, 'seed 9' here" output.txt || fail "other settings: no message"
+    ;;
+options)
+    refused 'one of --figure and --object' --out x
+    refused 'one of --figure and --object' --out x --object RR --figure 3b
+    refused '--out is needed' --object RR
+    refused '--policy nobody: must be one or several' --object RR --out x --policy nobody
+    refused 'none twice' --object RR --out x --policy rule,rule
+    refused '--policy : must be' --object RR --out x --policy ''
+    refused '--trials 0: must be a whole number from 1' --object RR --out x --trials 0
+    refused '--jobs -1: must be' --object RR --out x --jobs -1
+    refused '--figure 5: must be 3b, 4a, 4b, 4c or all' --figure 5 --out x
+    refused '--pretrain RR: must be an object, a colon' --object RR --out x --pretrain RR
+    refused '--pretrain goes with --object' --figure 4a --out x --pretrain RR:2
+    refused '--noise nan: must be' --object RR --out x --noise nan
+    refused '--transport tcp: must be memq or udpm' --object RR --out x --transport tcp
+    refused 'needs the simulator in the same process' --object RR --out x --transport udpm \
+        --policy clairvoyant
+    refused 'XY: ' --object XY --out x
+    refused 'NO: ' --object RR --pretrain NO:2 --out x
+    refused 'there are no arguments' --object RR --out x more
+    refused 'Try grrl-experiment --help' --unknown
+    [ ! -e x ] || fail "a folder was made all the same"
+    "$BIN" --help | grep -q 'clairvoyant  knows the truth' || fail "--help"
+    "$BIN" --version | grep -q '^grrl-experiment [0-9]' || fail "--version"
+    status=0
+    "$BIN" --object RR --out /dev/null/x >output.txt 2>&1 || status=$?
+    [ "$status" -eq 1 ] || fail "a folder that cannot be: exit status $status"
+    ;;
+*)
+    fail "no such case"
+    ;;
+esac

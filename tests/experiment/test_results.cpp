@@ -1,0 +1,109 @@
+/* Statistics and tables against figures worked out by hand. */
+#include <cmath>
+#include <csetjmp>
+#include <cstdarg>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "results.hpp"
+
+extern "C" {
+#include <cmocka.h>
+}
+
+using namespace grrl_experiment;
+
+namespace
+{
+
+Experiments two_experiments()
+{
+    Experiments experiments(2);
+    const int pushes[2][3] = {{1, 2, 3}, {3, 4, 100}};
+    for (size_t e = 0; e < 2; e++)
+        for (int t = 0; t < 3; t++) {
+            TrialRow row;
+            row.trial = t + 1;
+            row.pushes = pushes[e][t];
+            row.discovered = pushes[e][t] < 100;
+            experiments[e].push_back(row);
+        }
+    return experiments;
+}
+
+void assert_near(double a, double b)
+{
+    if (!(std::abs(a - b) < 1e-3))
+        fail_msg("%f is not %f", a, b);
+}
+
+void the_interval_is_students(void **)
+{
+    Estimate e = estimate({1.0, 2.0, 3.0, 4.0}); /* s = 1.29099, t(3) = 3.182 */
+    assert_near(e.mean, 2.5);
+    assert_near(e.half, 3.182 * 1.29099 / 2.0);
+    assert_true(estimate({7.0}).half < 0.0);
+    assert_near(estimate({7.0}).low(), 7.0);
+    assert_near(t_quantile(30), 2.042);
+    assert_near(t_quantile(40), 2.0211);
+    assert_near(t_quantile(100), 1.9840);
+}
+
+void an_experiment_counts_as_one_number(void **)
+{
+    Estimate e = pushes(two_experiments(), 1, 2); /* 1.5 and 3.5 */
+    assert_int_equal(e.n, 2);
+    assert_near(e.mean, 2.5);
+    assert_near(e.half, 12.706 * std::sqrt(2.0) / std::sqrt(2.0));
+    assert_near(capped(two_experiments(), 1, 3), 1.0 / 6.0);
+}
+
+void ranges_end_with_the_trials(void **)
+{
+    std::vector<Range> all = ranges(50);
+    assert_int_equal(all.size(), 6);
+    assert_int_equal(all[4].first, 41);
+    assert_string_equal(all[4].label.c_str(), "last 10");
+    std::vector<Range> few = ranges(7);
+    assert_int_equal(few.size(), 3);
+    assert_int_equal(few[1].last, 7);
+}
+
+void csv_quotes_what_it_must(void **)
+{
+    Plan plan;
+    Curve curve;
+    curve.object = "R(l1, l2)";
+    curve.policy = find_policy("paper");
+    curve.pretrain = "RR";
+    curve.pretrain_trials = 5;
+    curve.trials = 3;
+    plan.curves.push_back(curve);
+    std::string csv = trials_csv(plan, {two_experiments()}, 2);
+    assert_non_null(std::strstr(csv.c_str(), "\n\"R(l1, l2)\",paper,RR:5,2,2002,3,100,capped,0\n"));
+    std::string summary = summary_csv(plan, {two_experiments()});
+    assert_non_null(
+        std::strstr(summary.c_str(), "\n\"R(l1, l2)\",paper,RR:5,2,2,2,2,3.000,-9.706,15.706,"));
+}
+
+void every_policy_has_a_name_of_its_own(void **)
+{
+    for (const Policy &policy : policies())
+        assert_ptr_equal(find_policy(policy.name), &policy);
+    assert_null(find_policy("nobody"));
+}
+
+} // namespace
+
+int main()
+{
+    const CMUnitTest tests[] = {
+        cmocka_unit_test(the_interval_is_students),
+        cmocka_unit_test(an_experiment_counts_as_one_number),
+        cmocka_unit_test(ranges_end_with_the_trials),
+        cmocka_unit_test(csv_quotes_what_it_must),
+        cmocka_unit_test(every_policy_has_a_name_of_its_own),
+    };
+    return cmocka_run_group_tests(tests, nullptr, nullptr);
+}
