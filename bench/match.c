@@ -283,7 +283,7 @@ static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
             add_case(json, first, peers[p]->name, what, n, &times);
             rows[p].mean += log(times.mean);
             rows[p].built += log(times.mean + times.build);
-            rows[p].p99 += log(times.p99);
+            rows[p].p99 += log(times.p99 > 1 ? times.p99 : 1); /* the clock ticks in tens */
             rows[p].worst = times.worst > rows[p].worst ? times.worst : rows[p].worst;
             rows[p].n++;
         }
