@@ -315,7 +315,7 @@ static void run_symmetric(bool json, bool *first)
             void *a = peers[p]->build(&pair.pattern);
             void *b = peers[p]->build(&pair.target);
             bool slow = cases[c].legs > 6 && p >= 2 && strcmp(peers[p]->name, "nauty") != 0;
-            double best = INFINITY;
+            double best = (double)INFINITY;
             double spent = 0;
             for (int i = 0; i < 1000 && spent < 1e9 && !slow; i++) {
                 double start = bench_now_ns();

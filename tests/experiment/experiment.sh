@@ -49,7 +49,7 @@ refused() {
 
 case $CASE in
 jobs)
-    options=(--object RR --policy random,learn,rule,motion,clairvoyant --trials 2 --experiments 3)
+    options=(--object RR --policy "random,learn,rule,motion,clairvoyant" --trials 2 --experiments 3)
     run one "${options[@]}" --jobs 1
     run two "${options[@]}" --jobs 2
     same one two
@@ -73,13 +73,13 @@ figure)
     fi
     ;;
 transports)
-    options=(--object PR --policy random,learn,rule --pretrain R:1 --trials 2 --experiments 2)
+    options=(--object PR --policy "random,learn,rule" --pretrain R:1 --trials 2 --experiments 2)
     run memq "${options[@]}" --transport memq
     run udpm "${options[@]}" --transport udpm
     same memq udpm
     ;;
 killed)
-    options=(--object RPR --policy random,learn --trials 3 --experiments 6)
+    options=(--object RPR --policy "random,learn" --trials 3 --experiments 6)
     run whole "${options[@]}"
     for how in KILL TERM; do
         rm -rf parts
