@@ -36,7 +36,26 @@ double cosine(Line a, Line b)
     return std::abs(a.x * b.x + a.y * b.y);
 }
 
-double of_known_joints(const grrl_model &model, int body, Line push)
+/* What of its travel a push transmits to a body, and in which direction. */
+struct Thrust {
+    Line along;
+    double share;
+};
+
+Line axis_of(const grrl_body &body)
+{
+    return unit(static_cast<double>(body.axis.x), static_cast<double>(body.axis.y));
+}
+
+Thrust thrust_of(const grrl_body &body, Line push)
+{
+    Line axis = axis_of(body);
+    bool from_behind = cosine(axis, push) > 0.9;
+    return from_behind ? Thrust{axis, cosine(axis, push)}
+                       : Thrust{{-axis.y, axis.x}, sine(axis, push)};
+}
+
+double of_known_joints(const grrl_model &model, int body, Line along)
 {
     double sum = 0.0;
     for (int i = 0; i < model.n_joints; i++) {
@@ -44,27 +63,19 @@ double of_known_joints(const grrl_model &model, int body, Line push)
         if (joint.a != body && joint.b != body)
             continue;
         Line arm = between(joint.point_m, model.body[body].centroid_m);
-        if (joint.type == GRRL_REVOLUTE)
-            sum += static_cast<double>(joint.p_revolute) * sine(arm, push);
-        else
-            sum +=
-                static_cast<double>(joint.p_prismatic) *
-                cosine(unit(static_cast<double>(joint.axis.x), static_cast<double>(joint.axis.y)),
-                       push);
+        Line axis = unit(static_cast<double>(joint.axis.x), static_cast<double>(joint.axis.y));
+        double moves = joint.type == GRRL_REVOLUTE ? sine(arm, along) : cosine(axis, along);
+        sum += (1.0 - static_cast<double>(joint.probability)) * moves;
     }
     return sum;
 }
 
-double of_unknown_joints(const grrl_model &model, int body, Line push)
+double of_unknown_joints(const grrl_model &model, int body)
 {
     float shortest = model.body[body].length_m;
     for (int i = 0; i < model.n_bodies; i++)
         shortest = std::min(shortest, model.body[i].length_m);
-    double hidden =
-        shortest > 0.0f ? static_cast<double>(model.body[body].length_m / shortest) : 1.0;
-    Line axis = unit(static_cast<double>(model.body[body].axis.x),
-                     static_cast<double>(model.body[body].axis.y));
-    return hidden * 0.5 * (sine(axis, push) + cosine(axis, push));
+    return shortest > 0.0f ? 0.5 * static_cast<double>(model.body[body].length_m / shortest) : 0.5;
 }
 
 class Motion : public Chooser
@@ -106,8 +117,9 @@ double expected_motion(const grrl_model &model, int body, uint8_t direction)
     if (grrl_grounding_push(&model, &config, static_cast<uint8_t>(body), direction, &push) !=
         GRRL_OK)
         return 0.0;
-    Line along = between(push.start_m, push.end_m);
-    return of_known_joints(model, body, along) + of_unknown_joints(model, body, along);
+    Thrust thrust = thrust_of(model.body[body], between(push.start_m, push.end_m));
+    return thrust.share *
+           (of_known_joints(model, body, thrust.along) + of_unknown_joints(model, body));
 }
 
 std::unique_ptr<Chooser> make_motion()

@@ -1,13 +1,18 @@
 /*
- * motion.hpp: the push from which the believed model promises the most relative motion.
+ * motion.hpp: the push from which the believed model promises the most motion in joints it is not
+ * sure of.
  *
- * A quasi-static estimate: while the finger moves body B by its travel along d, the rest of the
- * object stays where the table holds it. Then a believed revolute joint of B with its pivot at q
- * moves by |sin(c - q, d)| of the travel (c: B's centroid), a prismatic one by |cos(axis, d)|, each
- * weighed with the probability of its type. Joints not known yet lie somewhere along B, as many as
- * the shortest body fits into it, with either type as likely: |sin(axis of B, d)| and
- * |cos(axis of B, d)|, half of each. The sum over known and unknown joints counts; no push is
- * repeated while the believed structure stays the same.
+ * A quasi-static estimate. The finger's contact hardly rubs, so that it transmits the part of its
+ * travel along the normal of the side it meets: along the body's axis for a push from behind, else
+ * across; that is |cos| or |sin| of the angle between push and axis. While it moves body B that far
+ * along n, the rest of the object stays where the table holds it. Then a believed revolute joint of
+ * B with its pivot at q moves by |sin(c - q, n)| of it (c: B's centroid), a prismatic one by
+ * |cos(its axis, n)|, each weighed with how unsure its type is. Joints not known yet lie somewhere
+ * along B, as many as the shortest body fits into it, and move by half of it, as either type is as
+ * likely. The sum counts; no push is repeated while the believed structure stays the same.
+ *
+ * With joints already believed counted in full it moves what it knows, again and again: 28 pushes
+ * on RPRPRPR instead of 13.
  */
 #ifndef GRRL_EXPERIMENT_MOTION_HPP
 #define GRRL_EXPERIMENT_MOTION_HPP

@@ -50,7 +50,7 @@ const std::vector<Policy> &policies()
         {"learn", "the library's learner", true, false, "#1666a8", memory, learning, nullptr},
         {"rule", "no learning: the longest body, along, across, at 45 degrees, no repeats", false,
          false, "#2f8f4e", memory, not_learning, rule},
-        {"motion", "no learning: the most relative motion on the believed model", false, false,
+        {"motion", "no learning: the most motion expected in joints not sure yet", false, false,
          "#8a4fb0", memory, not_learning, motion},
         {"clairvoyant", "knows the truth, tries every push in a copy of the world: a bound", false,
          true, "#b3243a", memory, not_learning, clairvoyant},
