@@ -101,7 +101,7 @@ static void take_part(const struct grrl_graph *graph, uint8_t n, struct grrl_gra
     part->n = n;
     for (uint8_t i = 0; i < graph->n; i++) {
         for (int type = 0; type < GRRL_JOINT_TYPES; type++)
-            part->joined[type][i] = i < n ? graph->joined[type][i] & ((UINT32_C(1) << n) - 1u) : 0;
+            part->joined[type][i] = i < n ? graph->joined[type][i] & (UINT32_MAX >> (32 - n)) : 0;
         part->label[i] = i < n ? graph->label[i] : 0;
     }
 }

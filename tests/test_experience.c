@@ -484,6 +484,38 @@ static void an_index_changes_nothing_that_is_recalled(void **state)
     assert_true(plain.evictions > 100);
 }
 
+/* More states than a recall searches, the far ones first: the closest are searched all the same. */
+static void the_closest_of_very_many_are_found(void **state)
+{
+    (void)state;
+    enum { MANY = 8 * GRRL_RECALL_STATES };
+    static struct grrl_experience_state many_states[MANY];
+    static struct grrl_experience many_experiences[MANY];
+    struct grrl_experience_store store;
+    grrl_experience_init(&store, many_states, MANY, many_experiences, MANY);
+    struct grrl_graph query = chain("RR", 0);
+    for (uint8_t length = 8; length >= 3; --length) { /* ever closer, all with the query in them */
+        for (grrl_label mark = 1; mark <= GRRL_RECALL_STATES + 8; ++mark) {
+            struct grrl_graph graph = chain("RR", 0);
+            while (graph.n <= length) {
+                grrl_label label = graph.n == length ? mark : 0;
+                assert_int_equal(grrl_graph_add_link(&graph, label, NULL), GRRL_OK);
+                assert_int_equal(grrl_graph_add_joint(&graph, (uint8_t)(graph.n - 1),
+                                                      (uint8_t)(graph.n - 2), GRRL_REVOLUTE),
+                                 GRRL_OK);
+            }
+            assert_int_equal(grrl_experience_update(&store, &graph, 0, 0, 1.0f, 0.5f, NULL),
+                             GRRL_OK);
+        }
+    }
+    assert_true(store.n_states > 2 * GRRL_RECALL_STATES);
+    struct grrl_recall recall;
+    grrl_experience_recall(&store, &query, &everything, &recall);
+    assert_int_equal(recall.entry[0][0].level, GRRL_RECALL_SUBSTRUCTURE);
+    assert_int_equal(recall.entry[0][0].distance, 2);
+    assert_int_equal(recall.entry[0][0].dropped, 0);
+}
+
 static void what_cannot_be_stored_is_refused(void **state)
 {
     (void)state;
@@ -540,6 +572,7 @@ int main(void)
         cmocka_unit_test(the_state_used_longest_ago_makes_room),
         cmocka_unit_test(small_stores_stay_sound),
         cmocka_unit_test(an_index_changes_nothing_that_is_recalled),
+        cmocka_unit_test(the_closest_of_very_many_are_found),
         cmocka_unit_test(what_cannot_be_stored_is_refused),
         cmocka_unit_test(an_empty_store_knows_nothing),
     };

@@ -142,7 +142,7 @@ static void test_trees(void **state)
             }
         }
     }
-    assert_true(n_images > 4000);
+    assert_true(n_images > 1000);
     struct grrl_graph loop = support_graph(&random, 3, 0, 0, 0);
     for (uint8_t i = 0; i < 3; i++)
         assert_int_equal(grrl_graph_add_joint(&loop, i, (uint8_t)((i + 1) % 3), GRRL_REVOLUTE),

@@ -284,26 +284,40 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
 /* The states closest to the current one, as far as signatures tell. */
 struct nearest {
     unsigned n;
-    unsigned limit; /* distances from here on are not wanted */
+    unsigned limit; /* distances from here on have no room */
     uint32_t state[GRRL_RECALL_STATES];
     uint8_t distance[GRRL_RECALL_STATES];
 };
 
-/* Makes room by letting the farthest go; no room if all are equally far. */
-static void drop_farthest(struct nearest *nearest)
+/* Makes room for one at this distance: of the farthest the youngest go. False: it is no closer. */
+static bool make_room(struct nearest *nearest, unsigned distance)
 {
-    uint8_t farthest = 0;
+    unsigned farthest = 0;
     for (unsigned i = 0; i < nearest->n; ++i) {
         farthest = nearest->distance[i] > farthest ? nearest->distance[i] : farthest;
     }
-    unsigned kept = 0;
-    for (unsigned i = 0; i < nearest->n; ++i) {
-        nearest->state[kept] = nearest->state[i];
-        nearest->distance[kept] = nearest->distance[i];
-        kept += nearest->distance[i] != farthest;
-    }
     nearest->limit = farthest;
-    nearest->n = kept == 0 ? nearest->n : kept;
+    if (distance >= farthest) {
+        return false;
+    }
+    unsigned to_go = GRRL_RECALL_STATES / 4 + 1; /* some at a time: this is rare */
+    unsigned kept = nearest->n;
+    for (unsigned i = nearest->n; i-- > 0;) {
+        if (nearest->distance[i] == farthest && to_go > 0) {
+            --to_go;
+            --kept;
+            nearest->distance[i] = 0; /* gone */
+        }
+    }
+    unsigned at = 0;
+    for (unsigned i = 0; i < nearest->n; ++i) {
+        if (nearest->distance[i] != 0) {
+            nearest->state[at] = nearest->state[i];
+            nearest->distance[at++] = nearest->distance[i];
+        }
+    }
+    nearest->n = kept;
+    return true;
 }
 
 /* Links and joints one of the two has more; each count is one of the lowest bytes of the word. */
@@ -349,11 +363,8 @@ static void find_nearest(const struct grrl_experience_store *store,
                    : !fits_within(current->word[1], paths)) {
             continue;
         }
-        if (nearest->n == GRRL_RECALL_STATES) {
-            drop_farthest(nearest);
-            if (distance >= nearest->limit) {
-                continue;
-            }
+        if (nearest->n == GRRL_RECALL_STATES && !make_room(nearest, distance)) {
+            continue;
         }
         nearest->state[nearest->n] = i;
         nearest->distance[nearest->n++] = (uint8_t)distance;

@@ -21,7 +21,7 @@ function mean(policy) {
 }
 END {
     left = "?"
-    if (done > 0) {
+    if (done > 0 && elapsed >= 2) {
         s = int(elapsed * (total * trials - done) / done + 0.5)
         left = sprintf("%d:%02d", int(s / 60), s % 60)
     }
