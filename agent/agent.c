@@ -149,9 +149,7 @@ enum grrl_status grrl_agent_init(struct grrl_agent *agent, const struct grrl_age
     agent->lcm = lcm;
     grrl_wire_bind_model(&agent->model);
     grrl_wire_bind_points(&agent->points);
-    enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, config->states,
-                                                config->states_capacity, config->experiences,
-                                                config->experiences_capacity);
+    enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, &config->memory);
     if (status != GRRL_OK)
         return status;
     return subscribe(agent);

@@ -4,8 +4,8 @@
  * The core subscribes and publishes on an lcm_t of the caller and asks the caller for the time; it
  * starts no thread, waits for nothing and touches no file. docs/messages.md has the protocol.
  *
- * Order of calls: grrl_agent_init; load experiences into agent.learner.store if there are any; then
- * lcm_handle and grrl_agent_tick in turns (tick at least every 100 ms) until grrl_agent_finished;
+ * Order of calls: grrl_agent_init; grrl_learner_load if there is experience; then lcm_handle and
+ * grrl_agent_tick in turns (tick at least every 100 ms) until grrl_agent_finished;
  * grrl_agent_close.
  */
 #ifndef GRRL_AGENT_H
@@ -48,10 +48,7 @@ struct grrl_agent_config {
     enum grrl_status (*choose)(void *context, struct grrl_learner *learner,
                                struct grrl_decision *decision);
     void *context;
-    struct grrl_experience_state *states; /* memory, see grrl_experience_init */
-    uint32_t states_capacity;
-    struct grrl_experience *experiences;
-    uint32_t experiences_capacity;
+    struct grrl_learner_memory memory;
 };
 
 struct grrl_agent_counts {

@@ -98,13 +98,17 @@ void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *d
     message->direction_deg = (int16_t)grrl_direction_deg[choice->direction];
     message->reason = (int8_t)choice->reason;
     message->experience = -1;
-    if (choice->reason == GRRL_CHOICE_EXPLOIT) {
+    message->value = choice->value;
+    message->lower = choice->lower;
+    message->upper = choice->upper;
+    if (choice->closest_case != GRRL_NO_CASE) {
+        message->level = GRRL_DECISION_T_CONTEXT;
+        message->distance = choice->mismatches;
+        message->experience = (int32_t)choice->closest_case;
+    } else if (choice->from.experience != GRRL_NO_EXPERIENCE) {
         message->level = (int8_t)choice->from.level;
         message->distance = choice->from.distance;
         message->experience = (int32_t)choice->from.experience;
-        message->value = choice->value;
-        message->lower = choice->lower;
-        message->upper = choice->upper;
     }
     message->phi = choice->phi;
     message->last_reward = agent->lesson.reward;
@@ -167,16 +171,16 @@ void agent_publish_status(struct grrl_agent *agent)
     if (agent->config.observe)
         return;
     struct grrl_wire_why why;
-    const struct grrl_experience_store *store = &agent->learner.store;
+    const struct grrl_learner_usage usage = grrl_learner_usage(&agent->learner);
     grrl_agent_status_t status = {
         .utime = agent_now_us(agent),
         .session_id = agent->config.session_id,
         .plant_session_id = agent->plant_session_id,
         .trial_id = agent->stage == STAGE_NONE ? 0 : agent->trial_id,
         .pushes = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq,
-        .experiences = (int32_t)store->n_experiences,
-        .capacity = (int32_t)store->experiences_capacity,
-        .evictions = (int32_t)(store->evictions & INT32_MAX),
+        .experiences = (int32_t)usage.n,
+        .capacity = (int32_t)usage.capacity,
+        .evictions = (int32_t)(usage.evictions & INT32_MAX),
         .received = agent->counts.received,
         .lost = agent->counts.lost,
         .repeated = agent->counts.repeated,

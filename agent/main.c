@@ -60,7 +60,7 @@ static void save(struct run *run)
 {
     struct grrl_store_error error;
     if (run->options.store == NULL ||
-        grrl_store_file_save(run->options.store, &agent.learner.store, &error))
+        grrl_store_file_save(run->options.store, &agent.learner, &error))
         return;
     (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", error.text);
     run->failed = true;
@@ -70,14 +70,14 @@ static void explain(const grrl_decision_t *decision)
 {
     static const char *const reasons[] = {"at random", "new action", "best bound", "adopted"};
     static const char *const levels[] = {"same structure", "same structure, properties dropped",
-                                         "sub-structure"};
+                                         "sub-structure", "similar actions"};
     (void)printf("trial %" PRId32 " push %" PRId32 ": f%d at %d deg, %s", decision->trial_id,
                  decision->cmd_seq, decision->link_number, decision->direction_deg,
                  reasons[decision->reason]);
-    if (decision->reason == GRRL_DECISION_T_EXPLOIT)
-        (void)printf(" %.2f (%.2f to %.2f) from experience %" PRId32 ", %s, distance %d",
+    if (decision->experience >= 0)
+        (void)printf(" %.2f (%.2f to %.2f) from %s, closest %" PRId32 " at distance %d",
                      (double)decision->value, (double)decision->lower, (double)decision->upper,
-                     decision->experience, levels[decision->level], decision->distance);
+                     levels[decision->level], decision->experience, decision->distance);
     (void)printf("; phi %.2f, last reward %g\n", (double)decision->phi,
                  (double)decision->last_reward);
 }
@@ -92,7 +92,7 @@ static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
     if (!run->options.quiet)
         (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)agent.learner.store.n_experiences);
+                     (unsigned)grrl_learner_usage(&agent.learner).n);
     save(run);
 }
 
@@ -169,7 +169,7 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
     }
     if (run->options.store == NULL)
         return true;
-    if (!grrl_store_file_load(run->options.store, &agent.learner.store, &error)) {
+    if (!grrl_store_file_load(run->options.store, &agent.learner, &error)) {
         (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
         return false;
     }
@@ -187,14 +187,17 @@ static int run_agent(struct run *run)
         .now_us = now_us,
         .on_event = on_event,
         .context = run,
-        .states_capacity = run->options.experiences,
-        .experiences_capacity = run->options.experiences,
+        .memory = {.cases_capacity = run->options.experiences,
+                   .states_capacity = run->options.experiences,
+                   .experiences_capacity = run->options.experiences},
     };
-    config.states = calloc(config.states_capacity, sizeof *config.states);
-    config.experiences = calloc(config.experiences_capacity, sizeof *config.experiences);
+    struct grrl_learner_memory *memory = &config.memory;
+    memory->cases = calloc(memory->cases_capacity, sizeof *memory->cases);
+    memory->states = calloc(memory->states_capacity, sizeof *memory->states);
+    memory->experiences = calloc(memory->experiences_capacity, sizeof *memory->experiences);
     lcm_t *lcm = NULL;
     bool started = false;
-    if (config.states != NULL && config.experiences != NULL)
+    if (memory->cases != NULL && memory->states != NULL && memory->experiences != NULL)
         lcm = open_lcm(run->options.lcm_url);
     if (lcm != NULL)
         started = start(run, &config, lcm);
@@ -205,8 +208,9 @@ static int run_agent(struct run *run)
     }
     if (lcm != NULL)
         lcm_destroy(lcm);
-    free(config.states);
-    free(config.experiences);
+    free(memory->cases);
+    free(memory->states);
+    free(memory->experiences);
     return started && !run->failed ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

@@ -38,14 +38,14 @@ static const struct {
     const char *argument; /* NULL: it has none */
     const char *help;
 } table[] = {
-    {OPT_POLICY, "policy", "learn|random", "how pushes are chosen (learn)"},
+    {OPT_POLICY, "policy", "NAME", "how pushes are chosen: learn, paper or random (learn)"},
     {OPT_STORE, "store", "FILE", "load experiences from FILE and save them there after each trial"},
     {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 1000000 (1000)"},
     {OPT_SEED, "seed", "N", "seed of all random choices (1)"},
-    {OPT_ALPHA, "alpha", "X", "learning rate, above 0 to 1"},
-    {OPT_GAMMA, "gamma", "X", "discount of later rewards, 0 to below 1"},
-    {OPT_BETA, "beta", "X", "exploration: a new action has probability exp(-beta phi) (2)"},
-    {OPT_Z, "z", "X", "width of the confidence bounds of Interval Estimation"},
+    {OPT_ALPHA, "alpha", "X", "paper: learning rate, above 0 to 1 (0.3)"},
+    {OPT_GAMMA, "gamma", "X", "paper: discount of later rewards, 0 to below 1 (0.3)"},
+    {OPT_BETA, "beta", "X", "paper: a new action has probability exp(-beta phi) (2)"},
+    {OPT_Z, "z", "X", "paper: width of the bounds of Interval Estimation (0.5)"},
     {OPT_NOISE, "noise", "MM", "standard deviation of a tracked point, millimetres (0.7)"},
     {OPT_OBSERVE, "observe", NULL, "learn from another agent's pushes, live or from a log"},
     {OPT_LCM_URL, "lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0"},
@@ -105,10 +105,18 @@ static bool parse_unsigned(const char *name, const char *text, unsigned long lon
 
 static bool parse_policy(const char *text, enum grrl_policy_kind *kind)
 {
-    *kind = strcmp(text, "random") == 0 ? GRRL_POLICY_RANDOM : GRRL_POLICY_LEARN;
-    if (strcmp(text, "learn") != 0 && strcmp(text, "random") != 0)
-        return bad("policy", text, "learn or random");
-    return true;
+    static const struct {
+        const char *name;
+        enum grrl_policy_kind kind;
+    } names[] = {
+        {"learn", GRRL_POLICY_LEARN}, {"paper", GRRL_POLICY_PAPER}, {"random", GRRL_POLICY_RANDOM}};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (strcmp(text, names[i].name) == 0) {
+            *kind = names[i].kind;
+            return true;
+        }
+    }
+    return bad("policy", text, "learn, paper or random");
 }
 
 static bool parse_noise(const char *text, float *noise_m)

@@ -43,14 +43,14 @@ static const char *advice(enum grrl_status status)
     }
 }
 
-bool grrl_store_file_load(const char *path, struct grrl_experience_store *store,
+bool grrl_store_file_load(const char *path, struct grrl_learner *learner,
                           struct grrl_store_error *error)
 {
     FILE *file = fopen(path, "rb");
     if (file == NULL)
         return errno == ENOENT || fail(error, path, strerror(errno));
     struct grrl_experience_io io = {.context = file, .read = read_bytes};
-    enum grrl_status status = grrl_experience_load(store, &io);
+    enum grrl_status status = grrl_learner_load(learner, &io);
     bool more = status == GRRL_OK && fgetc(file) != EOF;
     bool unreadable = ferror(file) != 0;
     int reason = errno;
@@ -79,14 +79,14 @@ static bool sync_folder(const char *path)
     return close(fd) == 0 && good;
 }
 
-static bool write_file(const char *path, const struct grrl_experience_store *store)
+static bool write_file(const char *path, const struct grrl_learner *learner)
 {
     FILE *file = fopen(path, "wb");
     if (file == NULL)
         return false;
     struct grrl_experience_io io = {.context = file, .write = write_bytes};
-    bool good = grrl_experience_save(store, &io) == GRRL_OK && fflush(file) == 0 &&
-                fsync(fileno(file)) == 0;
+    bool good =
+        grrl_learner_save(learner, &io) == GRRL_OK && fflush(file) == 0 && fsync(fileno(file)) == 0;
     int reason = errno;
     good = fclose(file) == 0 && good;
     if (!good && reason != 0)
@@ -94,7 +94,7 @@ static bool write_file(const char *path, const struct grrl_experience_store *sto
     return good;
 }
 
-bool grrl_store_file_save(const char *path, const struct grrl_experience_store *store,
+bool grrl_store_file_save(const char *path, const struct grrl_learner *learner,
                           struct grrl_store_error *error)
 {
     char temporary[PATH_BYTES];
@@ -102,7 +102,7 @@ bool grrl_store_file_save(const char *path, const struct grrl_experience_store *
     if (length < 0 || (size_t)length >= sizeof temporary)
         return fail(error, path, "the name is too long");
     errno = 0;
-    if (write_file(temporary, store) && rename(temporary, path) == 0 && sync_folder(path))
+    if (write_file(temporary, learner) && rename(temporary, path) == 0 && sync_folder(path))
         return true;
     int reason = errno;
     (void)unlink(temporary);

@@ -9,17 +9,17 @@
 
 #include <stdbool.h>
 
-#include "grrl/experience.h"
+#include "grrl/learner.h"
 
 struct grrl_store_error {
     char text[512];
 };
 
-/* A file that does not exist yet is an empty store. */
-bool grrl_store_file_load(const char *path, struct grrl_experience_store *store,
+/* A file that does not exist yet is a learner without experience. */
+bool grrl_store_file_load(const char *path, struct grrl_learner *learner,
                           struct grrl_store_error *error);
 
-bool grrl_store_file_save(const char *path, const struct grrl_experience_store *store,
+bool grrl_store_file_save(const char *path, const struct grrl_learner *learner,
                           struct grrl_store_error *error);
 
 #endif

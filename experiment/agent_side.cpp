@@ -69,7 +69,7 @@ grrl_status AgentSide::choose(void *context, grrl_learner *learner, grrl_decisio
 
 AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim::Node *node,
                      const Bytes &experience)
-    : clock_(std::move(clock)), states_(phase.policy->capacity),
+    : clock_(std::move(clock)), cases_(phase.policy->capacity), states_(phase.policy->capacity),
       experiences_(phase.policy->capacity), agent_(std::make_unique<grrl_agent>())
 {
     const Policy &policy = *phase.policy;
@@ -85,10 +85,8 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     config.on_event = on_event;
     config.choose = chooser_ != nullptr ? choose : nullptr;
     config.context = this;
-    config.states = states_.data();
-    config.states_capacity = policy.capacity;
-    config.experiences = experiences_.data();
-    config.experiences_capacity = policy.capacity;
+    config.memory = {cases_.data(),   policy.capacity,     states_.data(),
+                     policy.capacity, experiences_.data(), policy.capacity};
     must(grrl_agent_init(agent_.get(), &config, lcm), "the agent does not start");
     if (experience.empty())
         return;
@@ -96,7 +94,7 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     grrl_experience_io io{};
     io.context = &reader;
     io.read = read_bytes;
-    must(grrl_experience_load(&agent_->learner.store, &io), "the experience does not load");
+    must(grrl_learner_load(&agent_->learner, &io), "the experience does not load");
 }
 
 AgentSide::~AgentSide()
@@ -110,7 +108,7 @@ Bytes AgentSide::experience() const
     grrl_experience_io io{};
     io.context = &bytes;
     io.write = append_bytes;
-    must(grrl_experience_save(&agent_->learner.store, &io), "the experience does not save");
+    must(grrl_learner_save(&agent_->learner, &io), "the experience does not save");
     return bytes;
 }
 

@@ -12,9 +12,14 @@ namespace
 
 constexpr uint16_t memory = 1000; /* grrl-agent's default */
 
-void learning(grrl_learner_config &config)
+void learn(grrl_learner_config &config)
 {
     config.policy.kind = GRRL_POLICY_LEARN;
+}
+
+void paper(grrl_learner_config &config)
+{
+    config.policy.kind = GRRL_POLICY_PAPER;
 }
 
 /* Also for policies that are not the library's: they keep no experience. */
@@ -46,8 +51,9 @@ const std::vector<Policy> &policies()
         {"random", "any push, as likely as any other", false, false, "#8c8c8c", memory,
          not_learning, nullptr},
         {"paper", "the paper's learner: closest experience, phi, Interval Estimation", true, false,
-         "#d1661b", memory, learning, nullptr},
-        {"learn", "the library's learner", true, false, "#1666a8", memory, learning, nullptr},
+         "#d1661b", memory, paper, nullptr},
+        {"learn", "the library's learner: the mean over all cases alike", true, false, "#1666a8",
+         memory, learn, nullptr},
         {"rule", "no learning: the longest body, along, across, at 45 degrees, no repeats", false,
          false, "#2f8f4e", memory, not_learning, rule},
         {"motion", "no learning: the most motion expected in joints not sure yet", false, false,

@@ -20,7 +20,7 @@
 namespace grrl_experiment
 {
 
-using Bytes = std::vector<uint8_t>; /* experiences as grrl_experience_save writes them */
+using Bytes = std::vector<uint8_t>; /* as grrl_learner_save writes them */
 using Clock = std::function<int64_t()>;
 
 struct TrialRow {
@@ -62,6 +62,7 @@ private:
 
     Clock clock_;
     std::unique_ptr<Chooser> chooser_;
+    std::vector<grrl_case> cases_;
     std::vector<grrl_experience_state> states_;
     std::vector<grrl_experience> experiences_;
     std::unique_ptr<grrl_agent> agent_;

@@ -159,7 +159,7 @@ static const struct field decision_fields[] = {
     ONE(D, I16, link_number, 0, 32767),
     ONE(D, I16, direction_deg, 0, 359),
     ONE(D, I8, reason, GRRL_DECISION_T_RANDOM, GRRL_DECISION_T_FOREIGN),
-    ONE(D, I8, level, GRRL_DECISION_T_EXACT, GRRL_DECISION_T_SUBSTRUCTURE),
+    ONE(D, I8, level, GRRL_DECISION_T_EXACT, GRRL_DECISION_T_CONTEXT),
     ONE(D, I16, distance, 0, 32767),
     ONE(D, I32, experience, -1, 2147483647),
     ONE(D, F32, value, ANY_FLOAT),

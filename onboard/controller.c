@@ -72,9 +72,15 @@ static enum grrl_status open_run(struct onboard_controller *controller,
         return GRRL_ERR_VERSION;
     }
     onboard_controller_init(controller, controller->count);
-    enum grrl_status status =
-        grrl_learner_init(&controller->learner, &config, controller->states, ONBOARD_STATES,
-                          controller->experiences, ONBOARD_EXPERIENCES);
+    const struct grrl_learner_memory memory = {
+        .cases = controller->cases,
+        .cases_capacity = ONBOARD_EXPERIENCES,
+        .states = controller->states,
+        .states_capacity = ONBOARD_STATES,
+        .experiences = controller->experiences,
+        .experiences_capacity = ONBOARD_EXPERIENCES,
+    };
+    enum grrl_status status = grrl_learner_init(&controller->learner, &config, &memory);
     controller->open = status == GRRL_OK;
     begin_answer(controller, ONBOARD_DONE, status);
     return status;
@@ -163,7 +169,7 @@ static void close_run(struct onboard_controller *controller)
     struct grrl_experience_io io = {.context = controller, .write = hash_bytes};
     controller->store_hash = HASH_START;
     controller->store_bytes = 0;
-    enum grrl_status status = grrl_experience_save(&controller->learner.store, &io);
+    enum grrl_status status = grrl_learner_save(&controller->learner, &io);
     begin_answer(controller, ONBOARD_STORE, status);
     onboard_put(&controller->answer, controller->hashes.models, 8);
     onboard_put(&controller->answer, controller->hashes.decisions, 8);

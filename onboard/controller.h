@@ -46,6 +46,7 @@ struct onboard_hashes {
 
 struct onboard_controller {
     struct grrl_learner learner;
+    struct grrl_case cases[ONBOARD_EXPERIENCES];
     struct grrl_experience_state states[ONBOARD_STATES];
     struct grrl_experience experiences[ONBOARD_EXPERIENCES];
     struct onboard_points points; /* of the frame being taken in */

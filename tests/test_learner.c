@@ -12,7 +12,7 @@
 
 #define SEED UINT64_C(20080630)
 
-enum { STATES = 60, EXPERIENCES = 150, MOST_PUSHES = 300 };
+enum { CASES = 100, STATES = 60, EXPERIENCES = 150, MOST_PUSHES = 300 };
 
 /*
  * A world in place of perception, which is linked out: a chain of links whose joints are hidden at
@@ -164,6 +164,8 @@ static bool world_push(const struct grrl_choice *choice)
 struct fixture {
     struct grrl_learner learner;
     struct grrl_learner_config config;
+    struct grrl_learner_memory memory;
+    struct grrl_case cases[CASES];
     struct grrl_experience_state states[STATES];
     struct grrl_experience experiences[EXPERIENCES];
 };
@@ -175,8 +177,15 @@ static void init(struct fixture *fixture, enum grrl_policy_kind kind, uint64_t s
     grrl_learner_config_default(&fixture->config);
     fixture->config.policy.kind = kind;
     fixture->config.seed = seed;
-    assert_int_equal(grrl_learner_init(&fixture->learner, &fixture->config, fixture->states, STATES,
-                                       fixture->experiences, EXPERIENCES),
+    fixture->memory = (struct grrl_learner_memory){
+        .cases = fixture->cases,
+        .cases_capacity = CASES,
+        .states = fixture->states,
+        .states_capacity = STATES,
+        .experiences = fixture->experiences,
+        .experiences_capacity = EXPERIENCES,
+    };
+    assert_int_equal(grrl_learner_init(&fixture->learner, &fixture->config, &fixture->memory),
                      GRRL_OK);
 }
 
@@ -225,57 +234,128 @@ static unsigned run_trials(struct fixture *fixture, const char *joints, uint32_t
     return pushes;
 }
 
+static const enum grrl_policy_kind learners[] = {GRRL_POLICY_LEARN, GRRL_POLICY_PAPER};
+enum { LEARNERS = 2 };
+
 static void learning_needs_fewer_pushes_than_chance(void **state)
 {
     (void)state;
     print_message("seed %llu\n", (unsigned long long)SEED);
-    unsigned learned = 0;
+    unsigned learned[LEARNERS] = {0};
     unsigned chance = 0;
     uint32_t hash = 0;
     for (uint64_t seed = SEED; seed < SEED + 5; ++seed) {
-        init(&one, GRRL_POLICY_LEARN, seed);
-        (void)run_trials(&one, "RPRPR", 1, 20, &hash);
-        learned += run_trials(&one, "RPRPR", 21, 20, &hash);
+        for (int i = 0; i < LEARNERS; ++i) {
+            init(&one, learners[i], seed);
+            (void)run_trials(&one, "RPRPR", 1, 20, &hash);
+            learned[i] += run_trials(&one, "RPRPR", 21, 20, &hash);
+        }
         init(&two, GRRL_POLICY_RANDOM, seed);
         chance += run_trials(&two, "RPRPR", 1, 20, &hash);
         assert_int_equal(two.learner.store.n_experiences, 0);
+        assert_int_equal(two.learner.cases.n, 0);
     }
-    print_message("learned %u, random %u pushes\n", learned, chance);
-    assert_true(2 * learned < chance);
+    print_message("learn %u, paper %u, random %u pushes\n", learned[0], learned[1], chance);
+    assert_true(2 * learned[0] < chance && 2 * learned[1] < chance);
 }
 
 static void experience_of_one_object_helps_with_another(void **state)
 {
     (void)state;
     print_message("seed %llu\n", (unsigned long long)SEED);
-    unsigned with = 0;
-    unsigned without = 0;
     uint32_t hash = 0;
-    for (uint64_t seed = SEED; seed < SEED + 10; ++seed) {
-        init(&one, GRRL_POLICY_LEARN, seed);
-        (void)run_trials(&one, "RPR", 1, 20, &hash);
-        with += run_trials(&one, "RPRPR", 21, 5, &hash);
-        init(&two, GRRL_POLICY_LEARN, seed);
-        without += run_trials(&two, "RPRPR", 21, 5, &hash);
+    for (int i = 0; i < LEARNERS; ++i) {
+        unsigned with = 0;
+        unsigned without = 0;
+        for (uint64_t seed = SEED; seed < SEED + 10; ++seed) {
+            init(&one, learners[i], seed);
+            (void)run_trials(&one, "RPR", 1, 20, &hash);
+            with += run_trials(&one, "RPRPR", 21, 5, &hash);
+            init(&two, learners[i], seed);
+            without += run_trials(&two, "RPRPR", 21, 5, &hash);
+        }
+        print_message("with %u, without %u pushes\n", with, without);
+        assert_true(with < without);
     }
-    print_message("with %u, without %u pushes\n", with, without);
-    assert_true(with < without);
 }
 
 static void the_same_outcomes_give_the_same_choices(void **state)
 {
     (void)state;
-    uint32_t a = 0;
-    uint32_t b = 0;
-    uint32_t c = 0;
-    init(&one, GRRL_POLICY_LEARN, SEED);
-    init(&two, GRRL_POLICY_LEARN, SEED);
-    unsigned pushes = run_trials(&one, "RPRP", 1, 15, &a);
-    assert_int_equal(run_trials(&two, "RPRP", 1, 15, &b), pushes);
-    assert_int_equal(a, b);
-    init(&two, GRRL_POLICY_LEARN, SEED + 1);
-    (void)run_trials(&two, "RPRP", 1, 15, &c);
-    assert_int_not_equal(a, c);
+    for (int i = 0; i < LEARNERS; ++i) {
+        uint32_t a = 0;
+        uint32_t b = 0;
+        uint32_t c = 0;
+        init(&one, learners[i], SEED);
+        init(&two, learners[i], SEED);
+        unsigned pushes = run_trials(&one, "RPRP", 1, 15, &a);
+        assert_int_equal(run_trials(&two, "RPRP", 1, 15, &b), pushes);
+        assert_int_equal(a, b);
+        init(&two, learners[i], SEED + 1);
+        (void)run_trials(&two, "RPRP", 1, 15, &c);
+        assert_int_not_equal(a, c);
+    }
+}
+
+/* What was learned, as a file in memory. */
+static struct {
+    uint8_t bytes[1 << 16];
+    size_t n;
+    size_t at;
+} file;
+
+static int file_write(void *context, const void *bytes, size_t size)
+{
+    (void)context;
+    if (size > sizeof file.bytes - file.n) {
+        return -1;
+    }
+    memcpy(file.bytes + file.n, bytes, size);
+    file.n += size;
+    return 0;
+}
+
+static int file_read(void *context, void *bytes, size_t size)
+{
+    (void)context;
+    if (size > file.n - file.at) {
+        return -1;
+    }
+    memcpy(bytes, file.bytes + file.at, size);
+    file.at += size;
+    return 0;
+}
+
+static const struct grrl_experience_io file_io = {.write = file_write, .read = file_read};
+
+static void what_was_learned_can_be_saved(void **state)
+{
+    (void)state;
+    for (int i = 0; i < LEARNERS; ++i) {
+        uint32_t hash = 0;
+        uint32_t a = 0;
+        uint32_t b = 0;
+        init(&one, learners[i], SEED);
+        (void)run_trials(&one, "RPRP", 1, 10, &hash);
+        file.n = file.at = 0;
+        assert_int_equal(grrl_learner_save(&one.learner, &file_io), GRRL_OK);
+        init(&two, learners[i], SEED);
+        assert_int_equal(grrl_learner_load(&two.learner, &file_io), GRRL_OK);
+        assert_int_equal(file.at, file.n);
+        assert_int_equal(grrl_learner_usage(&two.learner).n, grrl_learner_usage(&one.learner).n);
+        unsigned pushes = run_trials(&one, "RPRP", 11, 10, &a);
+        assert_int_equal(run_trials(&two, "RPRP", 11, 10, &b), pushes);
+        assert_int_equal(a, b);
+        for (size_t cut = 0; cut < file.n; cut += cut < 200 ? 1 : 37) {
+            size_t whole = file.n;
+            file.n = cut;
+            file.at = 0;
+            assert_int_equal(grrl_learner_load(&two.learner, &file_io), GRRL_ERR_IO);
+            assert_int_equal(two.learner.cases.n, 0);
+            assert_int_equal(two.learner.store.n_experiences, 0);
+            file.n = whole;
+        }
+    }
 }
 
 /* A trial begun, and abandoned after some draws, leaves no trace but experience. */
@@ -345,10 +425,12 @@ static void targets_look_one_push_ahead(void **state)
 {
     (void)state;
     struct grrl_learner *learner = &one.learner;
+    init(&one, GRRL_POLICY_PAPER, SEED);
     start(learner);
     struct grrl_lesson lesson = adopt(learner, 1, 2, false);
     assert_true(lesson.target == 2.0f);
     assert_int_equal(lesson.experience, 0);
+    assert_int_equal(lesson.updated_case, GRRL_NO_CASE);
     start(learner);
     world_start("RPR");
     start(learner);
@@ -362,11 +444,12 @@ static void targets_look_one_push_ahead(void **state)
     assert_true(q->value > 2.29f && q->value < 2.31f);
 }
 
-static void a_decision_tells_why(void **state)
+static void a_decision_by_experience_tells_why(void **state)
 {
     (void)state;
     struct grrl_learner *learner = &one.learner;
     struct grrl_decision decision;
+    init(&one, GRRL_POLICY_PAPER, SEED);
     start(learner);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLORE);
@@ -393,6 +476,40 @@ static void a_decision_tells_why(void **state)
     assert_int_equal(grrl_learner_adopt(learner, 1, 2, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_FOREIGN);
     assert_true(decision.choice.value == 2.0f);
+}
+
+static void a_decision_by_cases_tells_why(void **state)
+{
+    (void)state;
+    struct grrl_learner *learner = &one.learner;
+    struct grrl_decision decision;
+    start(learner);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLORE);
+    assert_int_equal(decision.choice.closest_case, GRRL_NO_CASE);
+    assert_int_equal(decision.choice.from.experience, GRRL_NO_EXPERIENCE);
+    assert_true(decision.choice.phi == 0.0f && decision.choice.value == 0.5f);
+    start(learner);
+    struct grrl_lesson lesson = adopt(learner, 1, 2, false);
+    assert_true(lesson.reward == 2.0f && lesson.target == 2.0f);
+    assert_int_equal(lesson.updated_case, 0);
+    assert_int_equal(lesson.experience, GRRL_NO_EXPERIENCE);
+    world_start("RPR");
+    start(learner);
+    assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLOIT);
+    assert_int_equal(decision.choice.direction % 3, 2); /* across, to either side */
+    assert_int_equal(decision.choice.closest_case, 0);
+    assert_int_equal(decision.choice.mismatches, 0);
+    /* one reward of 2 over a prior of weight 1 and 0.5 */
+    assert_true(decision.choice.value == 1.25f);
+    assert_true(decision.choice.lower < 1.25f && decision.choice.upper > 1.25f);
+    start(learner);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 0, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_FOREIGN);
+    assert_int_equal(decision.choice.closest_case, 0);
+    assert_int_equal(decision.choice.mismatches, 1);
+    assert_true(decision.choice.value > 0.5f && decision.choice.value < 1.25f);
 }
 
 static void calls_out_of_order_are_refused(void **state)
@@ -435,34 +552,67 @@ static void calls_out_of_order_are_refused(void **state)
 static void a_learner_of_one_experience_works(void **state)
 {
     (void)state;
-    assert_int_equal(
-        grrl_learner_init(&one.learner, &one.config, one.states, 1, one.experiences, 1), GRRL_OK);
-    uint32_t hash = 0;
-    (void)run_trials(&one, "RPR", 1, 10, &hash);
-    assert_int_equal(one.learner.store.high_water, 1);
-    assert_true(one.learner.store.evictions > 0);
+    for (int i = 0; i < LEARNERS; ++i) {
+        uint32_t hash = 0;
+        one.config.policy.kind = learners[i];
+        one.memory.cases_capacity = one.memory.states_capacity = 1;
+        one.memory.experiences_capacity = 1;
+        assert_int_equal(grrl_learner_init(&one.learner, &one.config, &one.memory), GRRL_OK);
+        (void)run_trials(&one, "RPR", 1, 10, &hash);
+        assert_int_equal(grrl_learner_usage(&one.learner).n, 1);
+        assert_int_equal(grrl_learner_usage(&one.learner).capacity, 1);
+        assert_true(grrl_learner_usage(&one.learner).evictions > 0);
+    }
+}
+
+static void a_policy_needs_its_memory(void **state)
+{
+    (void)state;
+    const struct grrl_learner_memory all = one.memory;
+    const struct {
+        enum grrl_policy_kind kind;
+        uint32_t cases, states, experiences;
+        enum grrl_status status;
+    } given[] = {
+        {GRRL_POLICY_LEARN, 0, STATES, EXPERIENCES, GRRL_ERR_ARGUMENT},
+        {GRRL_POLICY_LEARN, CASES, 0, 0, GRRL_OK},
+        {GRRL_POLICY_PAPER, CASES, 0, EXPERIENCES, GRRL_ERR_ARGUMENT},
+        {GRRL_POLICY_PAPER, CASES, STATES, 0, GRRL_ERR_ARGUMENT},
+        {GRRL_POLICY_PAPER, 0, STATES, EXPERIENCES, GRRL_OK},
+        {GRRL_POLICY_RANDOM, 0, 0, 0, GRRL_OK},
+    };
+    for (size_t i = 0; i < sizeof given / sizeof given[0]; ++i) {
+        one.config.policy.kind = given[i].kind;
+        one.memory.cases = given[i].cases > 0 ? all.cases : NULL;
+        one.memory.cases_capacity = given[i].cases;
+        one.memory.states = given[i].states > 0 ? all.states : NULL;
+        one.memory.states_capacity = given[i].states;
+        one.memory.experiences = given[i].experiences > 0 ? all.experiences : NULL;
+        one.memory.experiences_capacity = given[i].experiences;
+        assert_int_equal(grrl_learner_init(&one.learner, &one.config, &one.memory),
+                         given[i].status);
+        if (given[i].status == GRRL_OK) {
+            uint32_t hash = 0;
+            (void)run_trials(&one, "RPR", 1, 3, &hash);
+        }
+    }
 }
 
 static void a_wrong_configuration_is_refused(void **state)
 {
     (void)state;
     struct grrl_learner_config config = one.config;
-    struct grrl_learner *learner = &one.learner;
-    assert_int_equal(grrl_learner_init(learner, &config, one.states, 0, one.experiences, 1),
-                     GRRL_ERR_ARGUMENT);
-    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 0),
-                     GRRL_ERR_ARGUMENT);
     config.policy.alpha = 2.0f;
-    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
-                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
+    config = one.config;
+    config.policy.cases.memory = 0;
+    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
     config = one.config;
     config.grounding.force_n = 0.0f;
-    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
-                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
     config = one.config;
     config.perception.noise_m = 0.0f;
-    assert_int_equal(grrl_learner_init(learner, &config, one.states, 1, one.experiences, 1),
-                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
 }
 
 static void the_belief_is_a_term(void **state)
@@ -498,12 +648,15 @@ int main(void)
         cmocka_unit_test_setup(learning_needs_fewer_pushes_than_chance, set_up),
         cmocka_unit_test_setup(experience_of_one_object_helps_with_another, set_up),
         cmocka_unit_test_setup(the_same_outcomes_give_the_same_choices, set_up),
+        cmocka_unit_test_setup(what_was_learned_can_be_saved, set_up),
         cmocka_unit_test_setup(nothing_but_experience_outlives_a_trial, set_up),
         cmocka_unit_test_setup(a_discovery_is_paid_once, set_up),
         cmocka_unit_test_setup(targets_look_one_push_ahead, set_up),
-        cmocka_unit_test_setup(a_decision_tells_why, set_up),
+        cmocka_unit_test_setup(a_decision_by_experience_tells_why, set_up),
+        cmocka_unit_test_setup(a_decision_by_cases_tells_why, set_up),
         cmocka_unit_test_setup(calls_out_of_order_are_refused, set_up),
         cmocka_unit_test_setup(a_learner_of_one_experience_works, set_up),
+        cmocka_unit_test_setup(a_policy_needs_its_memory, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
         cmocka_unit_test_setup(the_belief_is_a_term, set_up),
     };

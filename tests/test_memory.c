@@ -67,15 +67,26 @@ static const struct size sizes[] = {
     SIZE(grrl_recall),
     SIZE(grrl_recall_config),
     SIZE(grrl_experience_io),
+    SIZE(grrl_context),
+    SIZE(grrl_attempts),
+    SIZE(grrl_trial_attempts),
+    SIZE(grrl_case_config),
+    SIZE(grrl_case),
+    SIZE(grrl_case_base),
+    SIZE(grrl_estimate),
     SIZE(grrl_policy_config),
     SIZE(grrl_choice),
+    SIZE(grrl_contexts),
+    SIZE(grrl_learner_memory),
     SIZE(grrl_learner_config),
     SIZE(grrl_decision),
     SIZE(grrl_lesson),
     SIZE(grrl_learner),
+    SIZE(grrl_learner_usage),
     {"An agent of 100 experiences",
      sizeof(struct grrl_learner) +
-         100 * (sizeof(struct grrl_experience_state) + sizeof(struct grrl_experience))},
+         100 * (sizeof(struct grrl_case) + sizeof(struct grrl_experience_state) +
+                sizeof(struct grrl_experience))},
 };
 
 enum { N_SIZES = sizeof sizes / sizeof sizes[0], LINE_BYTES = 200 };
@@ -132,7 +143,7 @@ static void every_public_struct_is_listed(void **state)
     (void)state;
     const char *const headers[] = {"geometry",  "term",    "graph",      "signature", "match",
                                    "canonical", "random",  "perception", "grounding", "experience",
-                                   "policy",    "learner", "trajectory"};
+                                   "policy",    "learner", "trajectory", "context",   "case_base"};
     for (size_t h = 0; h < sizeof headers / sizeof headers[0]; ++h) {
         char path[LINE_BYTES * 2];
         (void)snprintf(path, sizeof path, "%s/lib/include/grrl/%s.h", GRRL_SOURCE_DIR, headers[h]);

@@ -14,7 +14,6 @@ void grrl_experience_init(struct grrl_experience_store *store, struct grrl_exper
                           uint32_t states_capacity, struct grrl_experience *experiences,
                           uint32_t experiences_capacity)
 {
-    assert(states_capacity >= 1 && experiences_capacity >= 1);
     *store = (struct grrl_experience_store){.states = states,
                                             .experiences = experiences,
                                             .states_capacity = states_capacity,
@@ -32,6 +31,14 @@ static void write_index(struct grrl_experience_store *store, uint32_t state)
         store->index[(size_t)word * store->states_capacity + state] =
             store->states[state].signature.word[word];
     }
+}
+
+void grrl_experience_clear(struct grrl_experience_store *store)
+{
+    uint64_t *index = store->index;
+    grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
+                         store->experiences_capacity);
+    store->index = index;
 }
 
 void grrl_experience_use_index(struct grrl_experience_store *store, uint64_t *index)
@@ -109,7 +116,8 @@ static uint32_t skip_others(const struct grrl_experience_store *store, int table
 uint32_t grrl_experience_first_in(const struct grrl_experience_store *store, int table,
                                   uint32_t key)
 {
-    return skip_others(store, table, key, *bucket_of(store, table, key));
+    return store->n_states == 0 ? GRRL_NO_STATE
+                                : skip_others(store, table, key, *bucket_of(store, table, key));
 }
 
 uint32_t grrl_experience_next_in(const struct grrl_experience_store *store, int table, uint32_t key,
@@ -337,6 +345,9 @@ enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
     }
     if (!(target >= -GRRL_MAX_TARGET && target <= GRRL_MAX_TARGET)) {
         return GRRL_ERR_NUMBER;
+    }
+    if (store->states_capacity == 0 || store->experiences_capacity == 0) {
+        return GRRL_ERR_FULL;
     }
     struct grrl_experience_state described;
     uint8_t order[GRRL_MAX_LINKS];

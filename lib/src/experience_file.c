@@ -3,138 +3,56 @@
 #include "bits.h"
 #include "experience_private.h"
 #include "grrl/geometry.h"
+#include "record.h"
 
 /* The layout is described in experience.h. */
-enum {
-    FILE_VERSION = 2,
-    HEADER_BYTES = 24,
-    CRC_BYTES = 4,
-    LINK_BYTES = 16,
-    EXPERIENCE_BYTES = 26,
-    MOST_BYTES = 1 + LINK_BYTES * GRRL_MAX_LINKS + CRC_BYTES
-};
+enum { FILE_VERSION = 2, HEADER_BYTES = 24, LINK_BYTES = 16, EXPERIENCE_BYTES = 26 };
 
-_Static_assert(MOST_BYTES >= EXPERIENCE_BYTES && MOST_BYTES >= HEADER_BYTES + CRC_BYTES,
+_Static_assert(GRRL_RECORD_BYTES >= 1 + LINK_BYTES * GRRL_MAX_LINKS &&
+                   (int)GRRL_RECORD_BYTES >= (int)EXPERIENCE_BYTES &&
+                   (int)GRRL_RECORD_BYTES >= (int)HEADER_BYTES,
                "every record fits");
 _Static_assert(GRRL_JOINT_TYPES == 2, "a new joint type is a new file version");
 
 static const uint8_t magic[8] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0};
 
-/* One record on its way out of or into the file, and the CRC so far. */
-struct record {
-    const struct grrl_experience_io *io;
-    uint32_t crc;
-    size_t n;
-    uint8_t bytes[MOST_BYTES];
-};
-
-/* CRC-32 (IEEE 802.3), bit by bit: a store is small and a table would be a kilobyte. */
-static uint32_t crc_of(uint32_t crc, const uint8_t *bytes, size_t n)
-{
-    crc = ~crc;
-    for (size_t i = 0; i < n; ++i) {
-        crc ^= bytes[i];
-        for (int bit = 0; bit < 8; ++bit) {
-            crc = (crc >> 1) ^ (UINT32_C(0xedb88320) & (0u - (crc & 1u)));
-        }
-    }
-    return ~crc;
-}
-
-static void put(struct record *record, uint64_t value, unsigned bytes)
-{
-    for (unsigned i = 0; i < bytes; ++i) {
-        record->bytes[record->n++] = (uint8_t)(value >> (8 * i));
-    }
-}
-
-static void put_float(struct record *record, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put(record, bits, 4);
-}
-
-static enum grrl_status write_record(struct record *record)
-{
-    record->crc = crc_of(record->crc, record->bytes, record->n);
-    put(record, record->crc, CRC_BYTES);
-    int failed = record->io->write(record->io->context, record->bytes, record->n);
-    record->n = 0;
-    return failed != 0 ? GRRL_ERR_IO : GRRL_OK;
-}
-
 enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
                                       const struct grrl_experience_io *io)
 {
-    struct record record = {.io = io};
+    struct grrl_record record = {.io = io};
     memcpy(record.bytes, magic, sizeof magic);
     record.n = sizeof magic;
-    put(&record, FILE_VERSION, 2);
-    put(&record, GRRL_MAX_PROPERTIES, 1);
-    put(&record, GRRL_DIRECTIONS, 1);
-    put(&record, store->n_states, 4);
-    put(&record, store->n_experiences, 4);
-    put(&record, store->clock, 4);
-    enum grrl_status status = write_record(&record);
+    grrl_record_put(&record, FILE_VERSION, 2);
+    grrl_record_put(&record, GRRL_MAX_PROPERTIES, 1);
+    grrl_record_put(&record, GRRL_DIRECTIONS, 1);
+    grrl_record_put(&record, store->n_states, 4);
+    grrl_record_put(&record, store->n_experiences, 4);
+    grrl_record_put(&record, store->clock, 4);
+    enum grrl_status status = grrl_record_write(&record);
     for (uint32_t i = 0; i < store->n_states && status == GRRL_OK; ++i) {
         struct grrl_graph graph;
         grrl_experience_graph(&store->states[i], &graph);
-        put(&record, graph.n, 1);
+        grrl_record_put(&record, graph.n, 1);
         for (uint8_t link = 0; link < graph.n; ++link) {
-            put(&record, graph.label[link], 8);
-            put(&record, graph.joined[GRRL_REVOLUTE][link], 4);
-            put(&record, graph.joined[GRRL_PRISMATIC][link], 4);
+            grrl_record_put(&record, graph.label[link], 8);
+            grrl_record_put(&record, graph.joined[GRRL_REVOLUTE][link], 4);
+            grrl_record_put(&record, graph.joined[GRRL_PRISMATIC][link], 4);
         }
-        status = write_record(&record);
+        status = grrl_record_write(&record);
     }
     for (uint32_t i = 0; i < store->n_experiences && status == GRRL_OK; ++i) {
         const struct grrl_experience *experience = &store->experiences[i];
-        put(&record, experience->state, 4);
-        put(&record, experience->link, 1);
-        put(&record, experience->direction, 1);
-        put(&record, experience->used_at, 4);
-        put_float(&record, experience->q.value);
-        put_float(&record, experience->q.mean);
-        put_float(&record, experience->q.deviations);
-        put(&record, experience->q.n, 4);
-        status = write_record(&record);
+        grrl_record_put(&record, experience->state, 4);
+        grrl_record_put(&record, experience->link, 1);
+        grrl_record_put(&record, experience->direction, 1);
+        grrl_record_put(&record, experience->used_at, 4);
+        grrl_record_put_float(&record, experience->q.value);
+        grrl_record_put_float(&record, experience->q.mean);
+        grrl_record_put_float(&record, experience->q.deviations);
+        grrl_record_put(&record, experience->q.n, 4);
+        status = grrl_record_write(&record);
     }
     return status;
-}
-
-/* Reads `bytes` more, behind what the record has, and starts taking from their beginning. */
-static enum grrl_status read_more(struct record *record, size_t bytes)
-{
-    int failed = record->io->read(record->io->context, record->bytes + record->n, bytes);
-    return failed != 0 ? GRRL_ERR_IO : GRRL_OK;
-}
-
-static uint64_t take(struct record *record, unsigned bytes)
-{
-    uint64_t value = 0;
-    for (unsigned i = 0; i < bytes; ++i) {
-        value |= (uint64_t)record->bytes[record->n++] << (8 * i);
-    }
-    return value;
-}
-
-static float take_float(struct record *record)
-{
-    uint32_t bits = (uint32_t)take(record, 4);
-    float value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-/* Compares the CRC behind a record of `bytes` and gets ready for the next. */
-static enum grrl_status check_crc(struct record *record, size_t bytes)
-{
-    record->crc = crc_of(record->crc, record->bytes, bytes);
-    record->n = bytes;
-    bool fine = take(record, CRC_BYTES) == record->crc;
-    record->n = 0;
-    return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
 struct header {
@@ -144,24 +62,24 @@ struct header {
 };
 
 static enum grrl_status read_header(const struct grrl_experience_store *store,
-                                    struct record *record, struct header *header)
+                                    struct grrl_record *record, struct header *header)
 {
-    if (read_more(record, HEADER_BYTES + CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
         return GRRL_ERR_IO;
     }
     if (memcmp(record->bytes, magic, sizeof magic) != 0) {
         return GRRL_ERR_FORMAT;
     }
     record->n = sizeof magic;
-    if (take(record, 2) != FILE_VERSION) {
+    if (grrl_record_take(record, 2) != FILE_VERSION) {
         return GRRL_ERR_VERSION;
     }
-    bool fits = take(record, 1) == GRRL_MAX_PROPERTIES;
-    fits = take(record, 1) == GRRL_DIRECTIONS && fits;
-    header->n_states = (uint32_t)take(record, 4);
-    header->n_experiences = (uint32_t)take(record, 4);
-    header->clock = (uint32_t)take(record, 4);
-    if (check_crc(record, HEADER_BYTES) != GRRL_OK) {
+    bool fits = grrl_record_take(record, 1) == GRRL_MAX_PROPERTIES;
+    fits = grrl_record_take(record, 1) == GRRL_DIRECTIONS && fits;
+    header->n_states = (uint32_t)grrl_record_take(record, 4);
+    header->n_experiences = (uint32_t)grrl_record_take(record, 4);
+    header->clock = (uint32_t)grrl_record_take(record, 4);
+    if (grrl_record_check(record, HEADER_BYTES) != GRRL_OK) {
         return GRRL_ERR_CORRUPT;
     }
     if (!fits) {
@@ -200,12 +118,12 @@ static bool is_graph(const struct grrl_graph *graph)
     return grrl_graph_joint_count(graph) <= GRRL_MAX_JOINTS;
 }
 
-static enum grrl_status read_state(struct grrl_experience_store *store, struct record *record)
+static enum grrl_status read_state(struct grrl_experience_store *store, struct grrl_record *record)
 {
-    if (read_more(record, 1) != GRRL_OK) {
+    if (grrl_record_read(record, 1) != GRRL_OK) {
         return GRRL_ERR_IO;
     }
-    uint8_t n = (uint8_t)take(record, 1);
+    uint8_t n = (uint8_t)grrl_record_take(record, 1);
     if (n == 0 || n > 32) {
         return GRRL_ERR_CORRUPT;
     }
@@ -213,18 +131,18 @@ static enum grrl_status read_state(struct grrl_experience_store *store, struct r
         return GRRL_ERR_VERSION;
     }
     size_t size = (size_t)n * LINK_BYTES;
-    if (read_more(record, size + CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, size + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
         return GRRL_ERR_IO;
     }
     struct grrl_graph graph;
     grrl_graph_clear(&graph);
     graph.n = n;
     for (uint8_t i = 0; i < n; ++i) {
-        graph.label[i] = take(record, 8);
-        graph.joined[GRRL_REVOLUTE][i] = (uint32_t)take(record, 4);
-        graph.joined[GRRL_PRISMATIC][i] = (uint32_t)take(record, 4);
+        graph.label[i] = grrl_record_take(record, 8);
+        graph.joined[GRRL_REVOLUTE][i] = (uint32_t)grrl_record_take(record, 4);
+        graph.joined[GRRL_PRISMATIC][i] = (uint32_t)grrl_record_take(record, 4);
     }
-    if (check_crc(record, 1 + size) != GRRL_OK || !is_graph(&graph)) {
+    if (grrl_record_check(record, 1 + size) != GRRL_OK || !is_graph(&graph)) {
         return GRRL_ERR_CORRUPT;
     }
     struct grrl_experience_state described;
@@ -246,21 +164,21 @@ static bool is_target(float x)
     return x >= -GRRL_MAX_TARGET && x <= GRRL_MAX_TARGET;
 }
 
-static enum grrl_status read_experience(struct grrl_experience_store *store, struct record *record,
-                                        uint32_t clock)
+static enum grrl_status read_experience(struct grrl_experience_store *store,
+                                        struct grrl_record *record, uint32_t clock)
 {
-    if (read_more(record, EXPERIENCE_BYTES + CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, EXPERIENCE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
         return GRRL_ERR_IO;
     }
-    uint32_t state = (uint32_t)take(record, 4);
-    uint8_t link = (uint8_t)take(record, 1);
-    uint8_t direction = (uint8_t)take(record, 1);
-    uint32_t used_at = (uint32_t)take(record, 4);
-    struct grrl_q q = {.value = take_float(record)};
-    q.mean = take_float(record);
-    q.deviations = take_float(record);
-    q.n = (uint32_t)take(record, 4);
-    bool fine = check_crc(record, EXPERIENCE_BYTES) == GRRL_OK && state < store->n_states &&
+    uint32_t state = (uint32_t)grrl_record_take(record, 4);
+    uint8_t link = (uint8_t)grrl_record_take(record, 1);
+    uint8_t direction = (uint8_t)grrl_record_take(record, 1);
+    uint32_t used_at = (uint32_t)grrl_record_take(record, 4);
+    struct grrl_q q = {.value = grrl_record_take_float(record)};
+    q.mean = grrl_record_take_float(record);
+    q.deviations = grrl_record_take_float(record);
+    q.n = (uint32_t)grrl_record_take(record, 4);
+    bool fine = grrl_record_check(record, EXPERIENCE_BYTES) == GRRL_OK && state < store->n_states &&
                 link < store->states[state < store->n_states ? state : 0].n &&
                 direction < GRRL_DIRECTIONS && used_at <= clock && is_target(q.value) &&
                 is_target(q.mean) && grrl_is_finite(q.deviations) && q.deviations >= 0.0f &&
@@ -278,7 +196,7 @@ static enum grrl_status read_experience(struct grrl_experience_store *store, str
 static enum grrl_status read_all(struct grrl_experience_store *store,
                                  const struct grrl_experience_io *io)
 {
-    struct record record = {.io = io};
+    struct grrl_record record = {.io = io};
     struct header header;
     enum grrl_status status = read_header(store, &record, &header);
     for (uint32_t i = 0; status == GRRL_OK && i < header.n_states; ++i) {
@@ -296,21 +214,13 @@ static enum grrl_status read_all(struct grrl_experience_store *store,
     return status;
 }
 
-static void empty(struct grrl_experience_store *store)
-{
-    uint64_t *index = store->index;
-    grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
-                         store->experiences_capacity);
-    store->index = index;
-}
-
 enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
                                       const struct grrl_experience_io *io)
 {
-    empty(store);
+    grrl_experience_clear(store);
     enum grrl_status status = read_all(store, io);
     if (status != GRRL_OK) {
-        empty(store);
+        grrl_experience_clear(store);
     }
     return status;
 }

@@ -160,6 +160,13 @@ enum grrl_status grrl_grounding_frame(const struct grrl_model *model, uint8_t bo
     return GRRL_OK;
 }
 
+struct grrl_vec2 grrl_grounding_direction(const struct grrl_link_frame *frame, uint8_t direction)
+{
+    float angle_rad = (float)grrl_direction_deg[direction] * (GRRL_PI / 180.0f);
+    return grrl_vec2_add(grrl_vec2_scale(frame->forward, grrl_cos(angle_rad)),
+                         grrl_vec2_scale(frame->side, grrl_sin(angle_rad)));
+}
+
 /* Where a body lies along a push: distances from its centroid. */
 struct span {
     float rear_m;
@@ -218,9 +225,7 @@ enum grrl_status grrl_grounding_push(const struct grrl_model *model,
     if (direction >= GRRL_DIRECTIONS || grrl_grounding_frame(model, body, &frame) != GRRL_OK) {
         return GRRL_ERR_ARGUMENT;
     }
-    float angle_rad = (float)grrl_direction_deg[direction] * (GRRL_PI / 180.0f);
-    struct grrl_vec2 along = grrl_vec2_add(grrl_vec2_scale(frame.forward, grrl_cos(angle_rad)),
-                                           grrl_vec2_scale(frame.side, grrl_sin(angle_rad)));
+    struct grrl_vec2 along = grrl_grounding_direction(&frame, direction);
     struct span span = span_along(model, body, along, config->finger_radius_m);
     float free_m = config->finger_radius_m + config->clearance_m;
     struct grrl_vec2 centroid = model->body[body].centroid_m;

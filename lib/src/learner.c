@@ -4,8 +4,9 @@
 
 /* An agent of 100 experiences fits a quarter of a megabyte (checked for the default capacities). */
 #if GRRL_MAX_LINKS <= 16 && GRRL_MAX_FEATURES <= 192 && GRRL_MAX_KEYFRAMES <= 48
-_Static_assert(sizeof(struct grrl_learner) + 100 * (sizeof(struct grrl_experience_state) +
-                                                    sizeof(struct grrl_experience)) <=
+_Static_assert(sizeof(struct grrl_learner) +
+                       100 * (sizeof(struct grrl_case) + sizeof(struct grrl_experience_state) +
+                              sizeof(struct grrl_experience)) <=
                    256 * 1024,
                "an agent of 100 experiences in 256 KiB");
 #endif
@@ -27,21 +28,32 @@ void grrl_learner_config_default(struct grrl_learner_config *config)
     config->seed = 1;
 }
 
+static bool is_enough(const struct grrl_learner_memory *memory, enum grrl_policy_kind kind)
+{
+    switch (kind) {
+    case GRRL_POLICY_LEARN:
+        return memory->cases_capacity > 0;
+    case GRRL_POLICY_PAPER:
+        return memory->states_capacity > 0 && memory->experiences_capacity > 0;
+    default:
+        return true;
+    }
+}
+
 enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    const struct grrl_learner_config *config,
-                                   struct grrl_experience_state *states, uint32_t states_capacity,
-                                   struct grrl_experience *experiences,
-                                   uint32_t experiences_capacity)
+                                   const struct grrl_learner_memory *memory)
 {
-    if (states_capacity == 0 || experiences_capacity == 0 ||
+    if (!is_enough(memory, config->policy.kind) ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
         grrl_policy_config_check(&config->policy, NULL) != GRRL_OK ||
         grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK) {
         return GRRL_ERR_ARGUMENT;
     }
     learner->config = *config;
-    grrl_experience_init(&learner->store, states, states_capacity, experiences,
-                         experiences_capacity);
+    grrl_experience_init(&learner->store, memory->states, memory->states_capacity,
+                         memory->experiences, memory->experiences_capacity);
+    grrl_cases_init(&learner->cases, memory->cases, memory->cases_capacity);
     learner->trial = 0;
     grrl_learner_abandon_trial(learner);
     return GRRL_OK;
@@ -54,6 +66,9 @@ void grrl_learner_abandon_trial(struct grrl_learner *learner)
     grrl_graph_clear(&learner->state);
     grrl_graph_clear(&learner->acted_on);
     memset(&learner->recall, 0, sizeof learner->recall);
+    memset(&learner->attempts, 0, sizeof learner->attempts);
+    memset(&learner->contexts, 0, sizeof learner->contexts);
+    grrl_cases_begin_trial(&learner->cases);
     memset(&learner->last_choice, 0, sizeof learner->last_choice);
     learner->pushes = 0;
     learner->most_links = 0;
@@ -102,7 +117,9 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
     if (status != GRRL_OK) {
         return status;
     }
-    grrl_model_graph(grrl_perception_model(&learner->perception), &learner->state, NULL, NULL);
+    const struct grrl_model *model = grrl_perception_model(&learner->perception);
+    grrl_model_graph(model, &learner->state, NULL, NULL);
+    grrl_attempts_look(&learner->attempts, model, learner->config.perception.large_m);
     if (learner->phase == PHASE_BEGUN || learner->phase == PHASE_READY) {
         (void)reveal(learner); /* what shows without a push is not paid */
         learner->phase = PHASE_READY;
@@ -116,6 +133,16 @@ static void recall_state(struct grrl_learner *learner)
 {
     grrl_experience_recall(&learner->store, &learner->state, &learner->config.policy.recall,
                            &learner->recall);
+}
+
+static void describe_actions(struct grrl_learner *learner)
+{
+    const struct grrl_model *model = grrl_perception_model(&learner->perception);
+    learner->contexts.n_links = model->n_bodies;
+    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+        (void)!grrl_context_of(&learner->attempts, model, learner->config.perception.large_m, i,
+                               learner->contexts.action[i]);
+    }
 }
 
 /* Turns a choice into a push and remembers what it was made on. */
@@ -133,6 +160,7 @@ static enum grrl_status decide(struct grrl_learner *learner, const struct grrl_c
         .choice = *choice, .body_number = model->body[choice->link].number, .push = push};
     learner->last_choice = *choice;
     learner->acted_on = learner->state;
+    grrl_attempts_add(&learner->attempts, model, choice->link, choice->direction);
     learner->phase = PHASE_ACTING;
     ++learner->pushes;
     return GRRL_OK;
@@ -146,12 +174,18 @@ enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_d
     if (learner->state.n == 0) {
         return GRRL_ERR_NONE;
     }
-    recall_state(learner);
+    const struct grrl_policy_config *policy = &learner->config.policy;
     struct grrl_choice choice;
-    grrl_policy_choose(&learner->config.policy, &learner->store, &learner->recall, &learner->random,
-                       &choice);
+    if (policy->kind == GRRL_POLICY_LEARN) {
+        describe_actions(learner);
+        grrl_policy_choose_by_cases(policy, &learner->cases, &learner->contexts, &learner->random,
+                                    &choice);
+    } else {
+        recall_state(learner);
+        grrl_policy_choose(policy, &learner->store, &learner->recall, &learner->random, &choice);
+    }
     enum grrl_status status = decide(learner, &choice, decision);
-    if (status == GRRL_OK && choice.reason == GRRL_CHOICE_EXPLOIT) {
+    if (status == GRRL_OK && choice.from.experience != GRRL_NO_EXPERIENCE) {
         grrl_experience_touch(&learner->store, choice.from.experience);
     }
     return status;
@@ -174,16 +208,40 @@ enum grrl_status grrl_learner_adopt(struct grrl_learner *learner, uint16_t body_
     if (link == learner->state.n) {
         return GRRL_ERR_NONE;
     }
-    recall_state(learner);
+    const struct grrl_policy_config *policy = &learner->config.policy;
     struct grrl_choice choice = {
         .link = link, .direction = direction, .reason = GRRL_CHOICE_FOREIGN};
-    grrl_policy_explain(&learner->config.policy, &learner->store, &learner->recall, &choice);
+    if (policy->kind == GRRL_POLICY_LEARN) {
+        describe_actions(learner);
+        grrl_policy_explain_by_cases(policy, &learner->cases, &learner->contexts, &choice);
+    } else {
+        recall_state(learner);
+        grrl_policy_explain(policy, &learner->store, &learner->recall, &choice);
+    }
     return decide(learner, &choice, decision);
 }
 
 static float limit(float x)
 {
     return x > GRRL_MAX_TARGET ? GRRL_MAX_TARGET : x;
+}
+
+/* The paper's update: Q-learning with the instance-based Q function; sections V-C and V-D. */
+static void learn_q(struct grrl_learner *learner, bool ended, struct grrl_lesson *lesson)
+{
+    const struct grrl_policy_config *policy = &learner->config.policy;
+    if (!ended) {
+        recall_state(learner);
+        lesson->target += policy->gamma * grrl_policy_best_value(&learner->store, &learner->recall);
+    }
+    lesson->target = limit(lesson->target); /* a discount next to 1 adds up without end */
+    const struct grrl_choice *choice = &learner->last_choice;
+    uint32_t index;
+    if (policy->kind == GRRL_POLICY_PAPER &&
+        grrl_experience_update(&learner->store, &learner->acted_on, choice->link, choice->direction,
+                               lesson->target, policy->alpha, &index) == GRRL_OK) {
+        lesson->experience = index;
+    }
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
@@ -193,25 +251,52 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
         return GRRL_ERR_ORDER;
     }
     const struct grrl_policy_config *policy = &learner->config.policy;
-    *lesson = (struct grrl_lesson){.experience = GRRL_NO_EXPERIENCE};
+    *lesson = (struct grrl_lesson){.experience = GRRL_NO_EXPERIENCE, .updated_case = GRRL_NO_CASE};
     lesson->reward = (float)reveal(learner) + (ended ? policy->trial_reward : 0.0f);
     lesson->target = lesson->reward;
-    if (!ended) {
-        recall_state(learner);
-        lesson->target += policy->gamma * grrl_policy_best_value(&learner->store, &learner->recall);
-    }
-    lesson->target = limit(lesson->target); /* a discount next to 1 adds up without end */
-    if (policy->kind != GRRL_POLICY_RANDOM) {
+    if (policy->kind == GRRL_POLICY_LEARN) {
         const struct grrl_choice *choice = &learner->last_choice;
-        uint32_t index;
-        if (grrl_experience_update(&learner->store, &learner->acted_on, choice->link,
-                                   choice->direction, lesson->target, policy->alpha,
-                                   &index) == GRRL_OK) {
-            lesson->experience = index;
-        }
+        lesson->updated_case = grrl_cases_learn(
+            &learner->cases, &policy->cases,
+            &learner->contexts.action[choice->link][choice->direction], lesson->reward);
+    } else {
+        learn_q(learner, ended, lesson);
     }
     learner->phase = ended ? PHASE_IDLE : PHASE_READY;
     return GRRL_OK;
+}
+
+struct grrl_learner_usage grrl_learner_usage(const struct grrl_learner *learner)
+{
+    if (learner->config.policy.kind == GRRL_POLICY_LEARN) {
+        return (struct grrl_learner_usage){learner->cases.n, learner->cases.capacity,
+                                           learner->cases.evictions};
+    }
+    return (struct grrl_learner_usage){learner->store.n_experiences,
+                                       learner->store.experiences_capacity,
+                                       learner->store.evictions};
+}
+
+enum grrl_status grrl_learner_save(const struct grrl_learner *learner,
+                                   const struct grrl_experience_io *io)
+{
+    enum grrl_status status = grrl_experience_save(&learner->store, io);
+    return status == GRRL_OK ? grrl_cases_save(&learner->cases, io) : status;
+}
+
+enum grrl_status grrl_learner_load(struct grrl_learner *learner,
+                                   const struct grrl_experience_io *io)
+{
+    grrl_cases_clear(&learner->cases);
+    enum grrl_status status = grrl_experience_load(&learner->store, io);
+    if (status != GRRL_OK) {
+        return status;
+    }
+    status = grrl_cases_load(&learner->cases, io);
+    if (status != GRRL_OK) {
+        grrl_experience_clear(&learner->store);
+    }
+    return status;
 }
 
 enum grrl_status grrl_learner_term(const struct grrl_learner *learner,

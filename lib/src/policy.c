@@ -13,6 +13,7 @@ void grrl_policy_config_default(struct grrl_policy_config *config)
         .prior_sd = 1.0f,
         .trial_reward = 1.0f,
         .recall = {.deepest = GRRL_RECALL_SUBSTRUCTURE, .budget = GRRL_MATCH_BUDGET}};
+    grrl_case_config_default(&config->cases);
 }
 
 /* Written so that a NaN is in no range. */
@@ -28,7 +29,8 @@ enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *confi
         const char *name;
         bool fine;
     } checks[] = {
-        {"kind", config->kind == GRRL_POLICY_LEARN || config->kind == GRRL_POLICY_RANDOM},
+        {"kind", config->kind == GRRL_POLICY_LEARN || config->kind == GRRL_POLICY_PAPER ||
+                     config->kind == GRRL_POLICY_RANDOM},
         {"alpha", config->alpha > 0.0f && config->alpha <= 1.0f},
         {"gamma", config->gamma >= 0.0f && config->gamma < 1.0f},
         {"beta", is_within(config->beta, 0.0f, GRRL_POLICY_MOST)},
@@ -48,7 +50,7 @@ enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *confi
             return GRRL_ERR_ARGUMENT;
         }
     }
-    return GRRL_OK;
+    return grrl_case_config_check(&config->cases, field);
 }
 
 void grrl_policy_bounds(const struct grrl_policy_config *config, const struct grrl_q *q,
@@ -84,6 +86,7 @@ void grrl_policy_explain(const struct grrl_policy_config *config,
                          const struct grrl_experience_store *store,
                          const struct grrl_recall *recall, struct grrl_choice *choice)
 {
+    choice->closest_case = GRRL_NO_CASE;
     choice->from = recall->entry[choice->link][choice->direction];
     choice->phi = (float)count_known(recall) / (float)(recall->n_links * GRRL_DIRECTIONS);
     choice->value = 0.0f;
@@ -177,4 +180,69 @@ float grrl_policy_best_value(const struct grrl_experience_store *store,
         }
     }
     return best;
+}
+
+static void set_estimate(struct grrl_choice *choice, const struct grrl_estimate *estimate)
+{
+    choice->from = (struct grrl_recall_entry){.experience = GRRL_NO_EXPERIENCE};
+    choice->closest_case = estimate->closest;
+    choice->mismatches = estimate->mismatches;
+    choice->value = estimate->value;
+    choice->lower = estimate->lower;
+    choice->upper = estimate->upper;
+}
+
+static bool is_met(const struct grrl_estimate *estimate)
+{
+    return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
+}
+
+void grrl_policy_choose_by_cases(const struct grrl_policy_config *config,
+                                 const struct grrl_case_base *base,
+                                 const struct grrl_contexts *contexts, struct grrl_random *random,
+                                 struct grrl_choice *choice)
+{
+    *choice = (struct grrl_choice){.reason = GRRL_CHOICE_EXPLORE};
+    uint32_t equals = 0;
+    unsigned met = 0;
+    float best = 0.0f;
+    for (uint8_t link = 0; link < contexts->n_links; ++link) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+            struct grrl_estimate estimate;
+            grrl_cases_estimate(base, &config->cases, &contexts->action[link][direction],
+                                &estimate);
+            met += is_met(&estimate);
+            if (equals == 0 || estimate.upper > best) {
+                equals = 0;
+                best = estimate.upper;
+            }
+            /* the kth of equals takes over with probability 1 / k */
+            if (estimate.upper == best && grrl_random_below(random, ++equals) == 0) {
+                choice->link = link;
+                choice->direction = direction;
+                choice->reason = is_met(&estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
+                set_estimate(choice, &estimate);
+            }
+        }
+    }
+    choice->phi = (float)met / (float)(contexts->n_links * GRRL_DIRECTIONS);
+}
+
+void grrl_policy_explain_by_cases(const struct grrl_policy_config *config,
+                                  const struct grrl_case_base *base,
+                                  const struct grrl_contexts *contexts, struct grrl_choice *choice)
+{
+    unsigned met = 0;
+    for (uint8_t link = 0; link < contexts->n_links; ++link) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+            struct grrl_estimate estimate;
+            grrl_cases_estimate(base, &config->cases, &contexts->action[link][direction],
+                                &estimate);
+            met += is_met(&estimate);
+            if (link == choice->link && direction == choice->direction) {
+                set_estimate(choice, &estimate);
+            }
+        }
+    }
+    choice->phi = (float)met / (float)(contexts->n_links * GRRL_DIRECTIONS);
 }

@@ -85,6 +85,7 @@ static void write_costs(void)
 static void write_memory(void)
 {
     write_line("ram learner", sizeof controller.learner);
+    write_line("ram cases", sizeof controller.cases);
     write_line("ram states", sizeof controller.states);
     write_line("ram experiences", sizeof controller.experiences);
     write_line("ram terms",
@@ -93,11 +94,11 @@ static void write_memory(void)
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
-    write_line("used experiences", controller.learner.store.n_experiences);
-    write_line("used states", controller.learner.store.n_states);
+    const struct grrl_learner_usage used = grrl_learner_usage(&controller.learner);
+    write_line("used experiences", used.n);
     write_line("used features", controller.learner.perception.counts.features_high);
     write_line("used keyframes", controller.learner.perception.counts.keyframes_high);
-    write_line("evictions", controller.learner.store.evictions);
+    write_line("evictions", used.evictions);
 }
 
 static int replay(const char *path)

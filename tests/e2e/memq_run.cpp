@@ -38,6 +38,7 @@ int main(int argc, char **argv)
     lcm_t *lcm = lcm_create("memq://");
     if (!object || lcm == nullptr)
         return 1;
+    std::vector<grrl_case> cases(1000);
     std::vector<grrl_experience_state> states(1000);
     std::vector<grrl_experience> experiences(1000);
     auto agent = std::make_unique<grrl_agent>();
@@ -46,10 +47,7 @@ int main(int argc, char **argv)
     agent_config.learner.seed = std::strtoull(argv[3], nullptr, 10);
     agent_config.session_id = 1;
     agent_config.now_us = agent_clock;
-    agent_config.states = states.data();
-    agent_config.states_capacity = 1000;
-    agent_config.experiences = experiences.data();
-    agent_config.experiences_capacity = 1000;
+    agent_config.memory = {cases.data(), 1000, states.data(), 1000, experiences.data(), 1000};
     if (grrl_agent_init(agent.get(), &agent_config, lcm) != GRRL_OK)
         return 1;
     NodeConfig config;
@@ -69,7 +67,7 @@ int main(int argc, char **argv)
     }
     grrl_agent_close(agent.get());
     grrl_store_error error;
-    bool saved = grrl_store_file_save(argv[4], &agent->learner.store, &error);
+    bool saved = grrl_store_file_save(argv[4], &agent->learner, &error);
     lcm_destroy(lcm);
     return saved ? 0 : 1;
 }

@@ -111,7 +111,7 @@ public:
             restart();
         }
         grrl_experience_io io = {&outcome_.experiences, append, nullptr};
-        assert_int_equal(grrl_experience_save(&agent_->learner.store, &io), GRRL_OK);
+        assert_int_equal(grrl_learner_save(&agent_->learner, &io), GRRL_OK);
         outcome_.agent_repeated = agent_->counts.repeated;
         outcome_.agent_foreign = agent_->counts.foreign;
         outcome_.agent_rejected = agent_->counts.rejected;
@@ -125,6 +125,7 @@ private:
     void start_agent()
     {
         agent_ = std::make_unique<grrl_agent>();
+        cases_.resize(capacity);
         states_.resize(capacity);
         experiences_.resize(capacity);
         grrl_agent_config config{};
@@ -133,10 +134,8 @@ private:
         config.session_id = agent_session_;
         config.now_us = agent_clock;
         config.choose = setup_.choose;
-        config.states = states_.data();
-        config.states_capacity = capacity;
-        config.experiences = experiences_.data();
-        config.experiences_capacity = capacity;
+        config.memory = {cases_.data(),       capacity, states_.data(), capacity,
+                         experiences_.data(), capacity};
         assert_int_equal(grrl_agent_init(agent_.get(), &config, lcm_), GRRL_OK);
     }
 
@@ -232,6 +231,7 @@ private:
     int64_t agent_session_ = agent_session;
     int64_t sim_session_ = sim_session;
     std::unique_ptr<grrl_agent> agent_;
+    std::vector<grrl_case> cases_;
     std::vector<grrl_experience_state> states_;
     std::vector<grrl_experience> experiences_;
     std::unique_ptr<Node> node_;

@@ -14,6 +14,7 @@ public:
     explicit Listener(bool observe) : lcm_(lcm_create("memq://"))
     {
         agent_ = std::make_unique<grrl_agent>();
+        cases_.resize(capacity);
         states_.resize(capacity);
         experiences_.resize(capacity);
         grrl_agent_config config{};
@@ -22,10 +23,8 @@ public:
         config.session_id = agent_session;
         config.observe = observe;
         config.now_us = agent_clock;
-        config.states = states_.data();
-        config.states_capacity = capacity;
-        config.experiences = experiences_.data();
-        config.experiences_capacity = capacity;
+        config.memory = {cases_.data(),       capacity, states_.data(), capacity,
+                         experiences_.data(), capacity};
         assert_int_equal(grrl_agent_init(agent_.get(), &config, lcm_), GRRL_OK);
     }
     ~Listener()
@@ -52,7 +51,7 @@ public:
     {
         std::vector<uint8_t> bytes;
         grrl_experience_io io = {&bytes, append, nullptr};
-        assert_int_equal(grrl_experience_save(&agent_->learner.store, &io), GRRL_OK);
+        assert_int_equal(grrl_learner_save(&agent_->learner, &io), GRRL_OK);
         return bytes;
     }
 
@@ -62,6 +61,7 @@ public:
 private:
     lcm_t *lcm_;
     std::unique_ptr<grrl_agent> agent_;
+    std::vector<grrl_case> cases_;
     std::vector<grrl_experience_state> states_;
     std::vector<grrl_experience> experiences_;
 };
@@ -252,7 +252,7 @@ void a_tracker_and_a_robot_are_enough(void **)
         listener.handle_all();
     }
     assert_int_equal(plant.pushes(), 12);
-    assert_true(listener.agent().learner.store.n_experiences > 0);
+    assert_true(listener.agent().learner.cases.n > 0);
     assert_int_equal(listener.agent().counts.lost, 0);
     /* it found joints, so the frames reached perception as frames of pushes */
     assert_true(grrl_perception_model(&listener.agent().learner.perception)->n_joints >= 1);

@@ -126,10 +126,14 @@ struct grrl_experience_io {
     int (*read)(void *context, void *bytes, size_t size);
 };
 
-/* Both capacities at least 1 and below GRRL_NO_EXPERIENCE. Without an index. */
+/* Capacities below GRRL_NO_EXPERIENCE; with one of 0 (its memory may be NULL) nothing is stored.
+ * Without an index. */
 void grrl_experience_init(struct grrl_experience_store *store, struct grrl_experience_state *states,
                           uint32_t states_capacity, struct grrl_experience *experiences,
                           uint32_t experiences_capacity);
+
+/* Forgets everything; memory and index stay. */
+void grrl_experience_clear(struct grrl_experience_store *store);
 
 /*
  * Gives the store an index: states_capacity times GRRL_SIGNATURE_WORDS numbers (40 bytes a state).
@@ -163,8 +167,8 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
  * Moves the estimate of (state, link, direction) towards a target: value <- (1 - alpha) value +
  * alpha target; a new entry starts with value = target. *index (may be NULL) tells the entry.
  * GRRL_ERR_ARGUMENT: no such link or direction, alpha outside (0, 1]. GRRL_ERR_NUMBER: a target
- * that is not finite or beyond +-GRRL_MAX_TARGET. GRRL_ERR_UNDECIDED: the state has no canonical
- * form within the budget. After a failure nothing is stored.
+ * that is not finite or beyond +-GRRL_MAX_TARGET. GRRL_ERR_FULL: a capacity of 0. GRRL_ERR_UNDECIDED: the state has
+ * no canonical form within the budget. After a failure nothing is stored.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
                                                       const struct grrl_graph *state, uint8_t link,

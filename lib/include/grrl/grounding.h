@@ -53,6 +53,9 @@ grrl_grounding_config_check(const struct grrl_grounding_config *config);
 GRRL_MUST_USE enum grrl_status grrl_grounding_frame(const struct grrl_model *model, uint8_t body,
                                                     struct grrl_link_frame *frame);
 
+/* The unit vector of a direction (an index into grrl_direction_deg) in the world frame. */
+struct grrl_vec2 grrl_grounding_direction(const struct grrl_link_frame *frame, uint8_t direction);
+
 /*
  * The push that an action (a body's index, an index into grrl_direction_deg) means: through the
  * centroid, from behind the rearmost feature in the tool's way to beyond the foremost one. The

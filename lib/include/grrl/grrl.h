@@ -17,6 +17,8 @@
 #include "grrl/perception.h"
 #include "grrl/trajectory.h"
 /* learning */
+#include "grrl/case_base.h"
+#include "grrl/context.h"
 #include "grrl/experience.h"
 #include "grrl/learner.h"
 #include "grrl/policy.h"

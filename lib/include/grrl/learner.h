@@ -19,10 +19,22 @@
 #ifndef GRRL_LEARNER_H
 #define GRRL_LEARNER_H
 
+#include "grrl/case_base.h"
+#include "grrl/context.h"
 #include "grrl/experience.h"
 #include "grrl/grounding.h"
 #include "grrl/perception.h"
 #include "grrl/policy.h"
+
+/* Memory for what is learned, the caller's. What the policy does not use may be NULL and 0. */
+struct grrl_learner_memory {
+    struct grrl_case *cases; /* LEARN: at least one */
+    uint32_t cases_capacity;
+    struct grrl_experience_state *states; /* PAPER: at least one state and one experience */
+    uint32_t states_capacity;
+    struct grrl_experience *experiences;
+    uint32_t experiences_capacity;
+};
 
 struct grrl_learner_config {
     struct grrl_perception_config perception;
@@ -41,20 +53,24 @@ struct grrl_decision {
 /* What a push taught. */
 struct grrl_lesson {
     float reward;        /* links and joints newly revealed, plus the trial's reward at its end */
-    float target;        /* r + gamma max Q(s', a') */
-    uint32_t experience; /* the entry updated; GRRL_NO_EXPERIENCE: with the random policy, or when
-                            the state is too symmetric to have a canonical form in the budget */
+    float target;        /* LEARN: the reward; PAPER: r + gamma max Q(s', a') */
+    uint32_t experience; /* PAPER: the entry updated; GRRL_NO_EXPERIENCE: the state is too symmetric
+                            to have a canonical form in the budget */
+    uint32_t updated_case; /* LEARN: the case updated, else GRRL_NO_CASE */
 };
 
 struct grrl_learner {
     struct grrl_learner_config config;
     struct grrl_perception perception;
-    struct grrl_experience_store store;
+    struct grrl_experience_store store; /* what the policy PAPER learns */
+    struct grrl_case_base cases;        /* what the policy LEARN learns */
     /* private */
     struct grrl_random random;
     struct grrl_graph state;    /* believed now: vertex i is body i of the model */
     struct grrl_graph acted_on; /* believed when the last choice was made */
     struct grrl_recall recall;  /* of state, for the last choice or lesson */
+    struct grrl_trial_attempts attempts;
+    struct grrl_contexts contexts; /* of state, for the last choice */
     struct grrl_choice last_choice;
     uint32_t trial;
     uint32_t pushes;    /* in this trial */
@@ -63,13 +79,19 @@ struct grrl_learner {
     uint8_t phase; /* where in the order of calls */
 };
 
+/* How full the memory of the policy in use is. */
+struct grrl_learner_usage {
+    uint32_t n; /* cases (LEARN) or experiences (PAPER) */
+    uint32_t capacity;
+    uint32_t evictions;
+};
+
 void grrl_learner_config_default(struct grrl_learner_config *config);
 
-/* The memory for experiences is the caller's, as in grrl_experience_init. GRRL_ERR_ARGUMENT. */
-GRRL_MUST_USE enum grrl_status
-grrl_learner_init(struct grrl_learner *learner, const struct grrl_learner_config *config,
-                  struct grrl_experience_state *states, uint32_t states_capacity,
-                  struct grrl_experience *experiences, uint32_t experiences_capacity);
+/* GRRL_ERR_ARGUMENT: a parameter outside its range, or no memory for the policy. */
+GRRL_MUST_USE enum grrl_status grrl_learner_init(struct grrl_learner *learner,
+                                                 const struct grrl_learner_config *config,
+                                                 const struct grrl_learner_memory *memory);
 
 /* Starts with a new object or a new pose; the random numbers start from (seed, trial). Ends an
  * unfinished trial as grrl_learner_abandon_trial.
@@ -103,6 +125,21 @@ GRRL_MUST_USE enum grrl_status grrl_learner_learn(struct grrl_learner *learner, 
 
 /* Forgets the trial, nothing is learned from a push without an outcome. */
 void grrl_learner_abandon_trial(struct grrl_learner *learner);
+
+struct grrl_learner_usage grrl_learner_usage(const struct grrl_learner *learner);
+
+/*
+ * All that was learned, whatever the policy, as bytes: what grrl_experience_save writes, then what
+ * grrl_cases_save writes. Between trials, or a trial's own rewards count as an earlier one's when
+ * loaded. GRRL_ERR_IO.
+ */
+GRRL_MUST_USE enum grrl_status grrl_learner_save(const struct grrl_learner *learner,
+                                                 const struct grrl_experience_io *io);
+
+/* Replaces all that was learned; statuses as of grrl_experience_load. After a failure the learner
+ * knows nothing. */
+GRRL_MUST_USE enum grrl_status grrl_learner_load(struct grrl_learner *learner,
+                                                 const struct grrl_experience_io *io);
 
 /* The believed structure as a term, D(lb, ..), links named fn with their properties. */
 GRRL_MUST_USE enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
