@@ -167,8 +167,9 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
  * Moves the estimate of (state, link, direction) towards a target: value <- (1 - alpha) value +
  * alpha target; a new entry starts with value = target. *index (may be NULL) tells the entry.
  * GRRL_ERR_ARGUMENT: no such link or direction, alpha outside (0, 1]. GRRL_ERR_NUMBER: a target
- * that is not finite or beyond +-GRRL_MAX_TARGET. GRRL_ERR_FULL: a capacity of 0. GRRL_ERR_UNDECIDED: the state has
- * no canonical form within the budget. After a failure nothing is stored.
+ * that is not finite or beyond +-GRRL_MAX_TARGET. GRRL_ERR_FULL: a capacity of 0.
+ * GRRL_ERR_UNDECIDED: the state has no canonical form within the budget. After a failure nothing is
+ * stored.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
                                                       const struct grrl_graph *state, uint8_t link,
