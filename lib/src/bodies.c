@@ -14,6 +14,8 @@
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
 #define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
 #define FAR_SIGMAS 5.0f     /* a range, of some ten rests, that noise does not reach */
+#define LITTLE 6.0f         /* a motion apart, in units of what tells a joint */
+#define CUT_GAIN 12.0f      /* chi squared by which another cut must be better */
 #define NEVER 1e9f
 #define REASSIGN_ROUNDS 6
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
@@ -145,6 +147,18 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
+static uint16_t slots_of_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                              uint16_t *slots)
+{
+    uint16_t n = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == a || p->body_of[i] == b) {
+            slots[n++] = i;
+        }
+    }
+    return n;
+}
+
 /* Whether two bodies may be one: they moved apart in no keyframe. */
 static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
@@ -152,29 +166,26 @@ static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t 
         return NEVER;
     }
     uint16_t slots[GRRL_MAX_FEATURES];
-    uint16_t n = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == a || p->body_of[i] == b) {
-            slots[n++] = i;
-        }
-    }
+    uint16_t n = slots_of_both(p, a, b, slots);
     return apart_evidence(p, slots, n, p->body_of, a, b);
 }
 
-/*
- * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
- * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
- * would be tied to either.
- */
-static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
+/* How far two bodies moved apart from rest to rest, and the variances of that. */
+struct range {
+    float turn;
+    float shift2;
+    float turn_var; /* the largest: noise alone must not look far enough */
+    float shift_var;
+};
+
+static struct range range_between(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     float turn[2] = {0.0f, 0.0f};
     struct grrl_vec2 shift[2] = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     struct grrl_pose reference = {{0.0f, 0.0f}, 1.0f, 0.0f}; /* of b in a, at the first rest */
     struct grrl_vec2 middle = {0.0f, 0.0f};
+    struct range range = {0};
     bool begun = false;
-    float turn_var = 0.0f; /* the largest: noise alone must not look far enough */
-    float shift_var = 0.0f;
     float noise2 = p->config.noise_m * p->config.noise_m;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
@@ -193,8 +204,8 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
         float tv = noise2 * (1.0f / (pa->inertia + 1e-9f) + 1.0f / (pb->inertia + 1e-9f));
         float sv =
             noise2 * (1.0f / pa->mass + 1.0f / pb->mass) + 0.25f * tv * grrl_vec2_dot(r.p, r.p);
-        turn_var = tv > turn_var ? tv : turn_var;
-        shift_var = sv > shift_var ? sv : shift_var;
+        range.turn_var = tv > range.turn_var ? tv : range.turn_var;
+        range.shift_var = sv > range.shift_var ? sv : range.shift_var;
         /* where b takes the point half way between them */
         struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
         struct grrl_vec2 d = grrl_vec2_sub(at, middle);
@@ -206,14 +217,25 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
         shift[1].x = d.x > shift[1].x ? d.x : shift[1].x;
         shift[1].y = d.y > shift[1].y ? d.y : shift[1].y;
     }
-    float turned = turn[1] - turn[0];
-    struct grrl_vec2 range = grrl_vec2_sub(shift[1], shift[0]);
-    float shifted2 = grrl_vec2_dot(range, range);
+    struct grrl_vec2 shifted = grrl_vec2_sub(shift[1], shift[0]);
+    range.turn = turn[1] - turn[0];
+    range.shift2 = grrl_vec2_dot(shifted, shifted);
+    return range;
+}
+
+/*
+ * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
+ * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
+ * would be tied to either.
+ */
+static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct range range = range_between(p, a, b);
     float least_turn = p->config.min_turn_rad;
     float least_shift = p->config.min_slide_m;
     float sigmas2 = FAR_SIGMAS * FAR_SIGMAS;
-    return (turned > least_turn && turned * turned > sigmas2 * turn_var) ||
-           (shifted2 > least_shift * least_shift && shifted2 > sigmas2 * shift_var);
+    return (range.turn > least_turn && range.turn * range.turn > sigmas2 * range.turn_var) ||
+           (range.shift2 > least_shift * least_shift && range.shift2 > sigmas2 * range.shift_var);
 }
 
 static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
@@ -370,6 +392,44 @@ static void dissolve_redundant(struct grrl_perception *p)
     }
 }
 
+/* Two bodies that moved apart only a little are cut anew, where they part best (cut.c). */
+static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct range range = range_between(p, a, b);
+    float little_turn = LITTLE * p->config.min_turn_rad;
+    float little_shift = LITTLE * p->config.min_slide_m;
+    if (range.turn > little_turn || range.shift2 > little_shift * little_shift ||
+        !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
+        return;
+    }
+    struct grrl_together together;
+    uint16_t part[GRRL_MAX_FEATURES];
+    uint16_t n_part;
+    together.n = slots_of_both(p, a, b, together.slot);
+    grrl_rigid_fit(p, together.slot, together.n, together.shape, together.pose, 1);
+    float gain = grrl_best_cut(p, &together, a, part, &n_part);
+    if (gain < CUT_GAIN * p->config.slack) {
+        return;
+    }
+    for (uint16_t i = 0; i < together.n; i++) {
+        p->body_of[together.slot[i]] = b;
+    }
+    for (uint16_t i = 0; i < n_part; i++) {
+        p->body_of[part[i]] = a;
+    }
+    fit_body(p, a);
+    fit_body(p, b);
+}
+
+static void cut_all_anew(struct grrl_perception *p)
+{
+    for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
+            cut_anew(p, a, b);
+        }
+    }
+}
+
 /* Splits body `body` if a part of it moved apart from the rest. */
 static void split_body(struct grrl_perception *p, uint8_t body)
 {
@@ -468,6 +528,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     }
     dissolve_small(p);
     merge_bodies(p);
+    cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
     dissolve_redundant(p);

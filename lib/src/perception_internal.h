@@ -5,6 +5,7 @@
  *   rigid.c       poses and residuals of a set of features taken as one rigid body
  *   first_look.c  what may be a body before anything has moved
  *   consensus.c   the largest set of features that moved as one
+ *   cut.c         the line along which two bodies part
  *   bodies.c      which features belong together: split, reassign, merge
  *   joints.c      what ties two bodies together
  *   structure.c   the joints of all bodies, and the model
@@ -65,6 +66,21 @@ float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16
  * size, members[] holds it. */
 uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                         const float *score, uint16_t *members);
+
+/* Features fitted as one rigid body. */
+struct grrl_together {
+    uint16_t n;
+    uint16_t slot[GRRL_MAX_FEATURES];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES];
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES];
+};
+
+/*
+ * cut.c: the straight cut that parts the features best, if it is better than what they are now:
+ * those of `body` and the others. Returns by how much in chi squared; part[] holds one side.
+ */
+float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
+                    uint8_t body, uint16_t *part, uint16_t *n_part);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
 void grrl_body_add(struct grrl_perception *p);
