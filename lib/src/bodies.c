@@ -33,6 +33,13 @@ static void fit_body(struct grrl_perception *p, uint8_t body)
     grrl_rigid_fit(p, slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS);
 }
 
+static void fit_all(struct grrl_perception *p)
+{
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        fit_body(p, b);
+    }
+}
+
 /* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
 static float cost_limit(const struct grrl_perception *p, uint16_t n)
 {
@@ -228,21 +235,33 @@ static struct range range_between(const struct grrl_perception *p, uint8_t a, ui
  * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
  * would be tied to either.
  */
-static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
+static bool is_far(const struct grrl_perception *p, const struct range *range)
 {
-    struct range range = range_between(p, a, b);
     float least_turn = p->config.min_turn_rad;
     float least_shift = p->config.min_slide_m;
     float sigmas2 = FAR_SIGMAS * FAR_SIGMAS;
-    return (range.turn > least_turn && range.turn * range.turn > sigmas2 * range.turn_var) ||
-           (range.shift2 > least_shift * least_shift && range.shift2 > sigmas2 * range.shift_var);
+    return (range->turn > least_turn && range->turn * range->turn > sigmas2 * range->turn_var) ||
+           (range->shift2 > least_shift * least_shift &&
+            range->shift2 > sigmas2 * range->shift_var);
+}
+
+/* In units of what tells a joint. */
+static bool is_less(const struct grrl_perception *p, const struct range *range, float units)
+{
+    float little_turn = units * p->config.min_turn_rad;
+    float little_shift = units * p->config.min_slide_m;
+    return range->turn < little_turn && range->shift2 < little_shift * little_shift;
 }
 
 static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
+    struct range range = range_between(p, a, b);
+    bool far = is_far(p, &range);
+    if (far && !is_less(p, &range, LITTLE * p->config.slack)) {
+        return false; /* beyond doubt; a fit of both together costs much more than this */
+    }
     float evidence = merge_evidence(p, a, b);
-    return evidence < MERGE_EVIDENCE * p->config.slack ||
-           (evidence < NEVER && !far_enough(p, a, b));
+    return evidence < MERGE_EVIDENCE * p->config.slack || (evidence < NEVER && !far);
 }
 
 static void merge_bodies(struct grrl_perception *p)
@@ -318,8 +337,8 @@ static bool reassign_once(struct grrl_perception *p)
         changed = changed || p->body_of[i] != best;
         p->body_of[i] = best;
     }
-    for (uint8_t b = 0; b < p->n_bodies && changed; b++) {
-        fit_body(p, b);
+    if (changed) {
+        fit_all(p);
     }
     return changed;
 }
@@ -343,6 +362,24 @@ static void dissolve_small(struct grrl_perception *p)
             }
             remove_body(p, b--);
         }
+    }
+}
+
+/* What never moved and hangs together only by what has moved away is the table beside the object.
+ */
+static void give_back_the_table(struct grrl_perception *p)
+{
+    for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
+        if (body_has_moved(p, b) || grrl_hangs_together(p, b)) {
+            continue;
+        }
+        for (uint16_t i = 0; i < p->n_slots; i++) {
+            if (p->body_of[i] == b) {
+                p->body_of[i] = GRRL_FEATURE_BACKGROUND;
+                p->blob_of[i] = 0;
+            }
+        }
+        remove_body(p, b--);
     }
 }
 
@@ -396,10 +433,7 @@ static void dissolve_redundant(struct grrl_perception *p)
 static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     struct range range = range_between(p, a, b);
-    float little_turn = LITTLE * p->config.min_turn_rad;
-    float little_shift = LITTLE * p->config.min_slide_m;
-    if (range.turn > little_turn || range.shift2 > little_shift * little_shift ||
-        !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
+    if (!is_less(p, &range, LITTLE) || !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
         return;
     }
     struct grrl_together together;
@@ -515,8 +549,9 @@ void grrl_bodies_update(struct grrl_perception *p)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         p->has_moved[i] = moves(p, i);
     }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
-        fit_body(p, b);
+    fit_all(p);
+    if (grrl_drop_outliers(p)) {
+        fit_all(p);
     }
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         split_body(p, b);
@@ -531,6 +566,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
+    give_back_the_table(p);
     dissolve_redundant(p);
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         p->bend_m2[b] = bend_of(p, b);

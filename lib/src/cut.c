@@ -11,6 +11,7 @@
 #include "perception_internal.h"
 
 #define DIRECTIONS 6 /* of the line, over half a turn */
+#define HIDDEN_SIGMAS 5.0f
 
 /* What one part of the features tells in one keyframe, weighted by 1 / variance: q is a feature's
  * place, d its residual. */
@@ -32,9 +33,9 @@ static void add(struct part_sum *to, const struct part_sum *one, float sign)
 }
 
 /* Chi squared that a shift and a turn of its own save a part. */
-static float saved(const struct part_sum *s)
+static float saved(const struct part_sum *s, float least_w)
 {
-    if (!(s->w > 0.0f)) {
+    if (!(s->w > least_w)) {
         return 0.0f;
     }
     float inertia = s->qq - grrl_vec2_dot(s->q, s->q) / s->w;
@@ -47,7 +48,8 @@ static float saved_by_both(const struct part_sum *part, const struct part_sum *a
 {
     struct part_sum rest = *all;
     add(&rest, part, -1.0f);
-    return saved(part) + saved(&rest);
+    float rounding = 1e-3f * all->w;
+    return saved(part, rounding) + saved(&rest, rounding);
 }
 
 /* One feature in one keyframe; one that is off more than motion explains counts for nothing. */
@@ -152,4 +154,21 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
                                        direction.x * 0.5f + direction.y * 0.8660254f};
     }
     return best - now;
+}
+
+bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body)
+{
+    struct grrl_together together;
+    uint16_t part[GRRL_MAX_FEATURES];
+    uint16_t n_part;
+    together.n = grrl_body_slots(p, body, together.slot);
+    for (uint16_t i = 0; i < together.n; i++) {
+        together.shape[together.slot[i]] = p->shape[together.slot[i]];
+    }
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        together.pose[k] = p->pose[k][body];
+    }
+    float free = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
+    float gain = grrl_best_cut(p, &together, body, part, &n_part);
+    return gain > (free + HIDDEN_SIGMAS * grrl_sqrt(2.0f * free)) * p->config.slack;
 }

@@ -4,6 +4,7 @@
  *   perception.c  tracks and keyframes: what was seen
  *   rigid.c       poses and residuals of a set of features taken as one rigid body
  *   first_look.c  what may be a body before anything has moved
+ *   outliers.c    points that no motion explains
  *   consensus.c   the largest set of features that moved as one
  *   cut.c         the line along which two bodies part
  *   bodies.c      which features belong together: split, reassign, merge
@@ -55,6 +56,13 @@ uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t
 /* first_look.c: the candidate bodies in the first keyframe. */
 void grrl_first_look(struct grrl_perception *p);
 
+/* Whether enough features of a body lay densely there, without those of others between them. */
+bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body);
+
+/* outliers.c: takes lone points off their bodies out of the keyframes of pushes not yet examined;
+ * whether there were any. */
+bool grrl_drop_outliers(struct grrl_perception *p);
+
 /*
  * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
  * together, in standard deviations of chi squared; score[k] is that of keyframe k.
@@ -81,6 +89,9 @@ struct grrl_together {
  */
 float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
                     uint8_t body, uint16_t *part, uint16_t *n_part);
+
+/* Whether a body's features part along some line more than noise explains. */
+bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
 void grrl_body_add(struct grrl_perception *p);
