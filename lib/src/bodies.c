@@ -445,11 +445,15 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
     if (gain < CUT_GAIN * p->config.slack) {
         return;
     }
+    int of_a = 0; /* the part goes on as the body most of it was, so that numbers stay */
+    for (uint16_t i = 0; i < n_part; i++) {
+        of_a += p->body_of[part[i]] == a ? 1 : -1;
+    }
     for (uint16_t i = 0; i < together.n; i++) {
-        p->body_of[together.slot[i]] = b;
+        p->body_of[together.slot[i]] = of_a > 0 ? b : a;
     }
     for (uint16_t i = 0; i < n_part; i++) {
-        p->body_of[part[i]] = a;
+        p->body_of[part[i]] = of_a > 0 ? a : b;
     }
     fit_body(p, a);
     fit_body(p, b);
