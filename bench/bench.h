@@ -52,6 +52,11 @@ extern const struct bench_peer bench_igraph;
 extern const struct bench_peer bench_nauty;
 #endif
 
+#ifdef GRRL_BENCH_NETWORKX
+/* Nanoseconds of a query and of building both graphs, as Python counts them; false: it failed. */
+bool bench_networkx(const struct bench_pair *pairs, unsigned n, double *match_ns, double *build_ns);
+#endif
+
 /* Nanoseconds this thread has had a processor: others on the machine do not count. */
 double bench_now_ns(void);
 
