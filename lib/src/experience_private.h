@@ -19,7 +19,8 @@
 /* The tables of a store. */
 enum { GRRL_TABLE_EXACT, GRRL_TABLE_SHAPE };
 
-/* Whether a state could be a sub-structure of another, properties aside, as far as counts tell. */
+/* Whether a state could be a sub-structure of another, properties aside, as far as counts tell:
+ * without branches, which would go either way at random. */
 static inline bool grrl_experience_fits(uint64_t part, const struct grrl_paths *part_paths,
                                         uint64_t whole, const struct grrl_paths *whole_paths)
 {

@@ -283,6 +283,11 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
 
 /* --- sub-structures --------------------------------------------------------------------------- */
 
+/* No two states differ by more links and joints. */
+enum { FARTHEST = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
+
+_Static_assert(FARTHEST <= UINT8_MAX, "distances are bytes");
+
 /* The states closest to the current one, as far as signatures tell. */
 struct nearest {
     unsigned n;
@@ -316,12 +321,12 @@ static void scan_states(const struct grrl_experience_store *store,
                         const struct grrl_experience_state *current, uint32_t room,
                         struct nearest *nearest)
 {
-    uint32_t count[UINT8_MAX + 1] = {0};
+    uint32_t count[FARTHEST + 1] = {0};
     unsigned last = 0;
     for (uint32_t i = 0; i < store->n_states; ++i) {
         ++count[distance_of(&store->states[i], current)];
     }
-    while (last < UINT8_MAX && count[last + 1] <= room) {
+    while (last < FARTHEST && count[last + 1] <= room) {
         room -= count[++last];
     }
     nearest->n = 0;
@@ -411,13 +416,15 @@ static void consult_parts(struct job *job, const struct grrl_recall_config *conf
         scan_states(job->store, current, left, &nearest);
         left = nearest.n;
     }
-    unsigned reach = index == NULL ? UINT8_MAX : grrl_experience_index_reach(index, current);
+    unsigned reach = index == NULL ? FARTHEST : grrl_experience_index_reach(index, current);
     for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
         if (index != NULL) {
             nearest.n = grrl_experience_index_find(index, current, d, left, nearest.state);
         }
         for (unsigned k = 0; k < nearest.n; ++k) {
-            look_ahead(job->store, &nearest, k);
+            if (index != NULL) {
+                look_ahead(job->store, &nearest, k);
+            }
             if (index != NULL || nearest.distance[k] == d) {
                 consult_part(job, nearest.state[k], d, config, current, places);
                 --left;
