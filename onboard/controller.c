@@ -63,9 +63,11 @@ static enum grrl_status open_run(struct onboard_controller *controller,
     struct grrl_learner_config config;
     grrl_learner_config_default(&config);
     config.seed = onboard_get(packet, 8);
-    if (!onboard_packet_used_up(packet)) {
+    uint64_t policy = onboard_get(packet, 1);
+    if (!onboard_packet_used_up(packet) || policy > GRRL_POLICY_RANDOM) {
         return GRRL_ERR_FORMAT;
     }
+    config.policy.kind = (enum grrl_policy_kind)policy;
     if (links != GRRL_MAX_LINKS || features != GRRL_MAX_FEATURES ||
         keyframes != GRRL_MAX_KEYFRAMES || states != ONBOARD_STATES ||
         experiences != ONBOARD_EXPERIENCES) {
@@ -151,7 +153,8 @@ static void learn(struct onboard_controller *controller, struct onboard_packet *
     count(controller, ONBOARD_STEP_LEARN, start);
     begin_answer(controller, ONBOARD_LESSON, status);
     if (status == GRRL_OK) {
-        onboard_put_lesson(&controller->answer, &lesson);
+        const struct grrl_learner_usage usage = grrl_learner_usage(&controller->learner);
+        onboard_put_lesson(&controller->answer, &lesson, &usage);
     }
     add_answer(controller, &controller->hashes.lessons);
 }

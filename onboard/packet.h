@@ -3,15 +3,19 @@
  *
  * A packet is a type, a length (2 bytes) and that many bytes. A recording is a row of packets; on
  * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each but
- * a frame is answered.
+ * a frame is answered; on a line the frame, too, with DONE.
  *
- *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8)
+ *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8),
+ *            policy (1)
  *   TRIAL    number (4)
  *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
  *   PERCEIVE, CHOOSE, CLOSE    nothing
  *   LEARN    ended (1)
  *   EXPECT   the hashes so far of models, decisions and lessons (8 each): in recordings only
- *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and then as written below
+ *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and, when it is 0, what the
+ *            functions below write
+ *   REFUSED  a status (1): there is no such packet, or not now. On a line only
+ *   BAD      damaged frames so far (4): the last one is to be sent again. On a line only
  */
 #ifndef ONBOARD_PACKET_H
 #define ONBOARD_PACKET_H
@@ -35,7 +39,9 @@ enum onboard_packet_type {
     ONBOARD_MODEL,
     ONBOARD_DECISION,
     ONBOARD_LESSON,
-    ONBOARD_STORE
+    ONBOARD_STORE,
+    ONBOARD_REFUSED,
+    ONBOARD_BAD
 };
 
 /* The most bytes of a packet: a model with everything in it, or a frame. */
@@ -81,6 +87,14 @@ bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *poi
 
 void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model);
 void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision);
-void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson);
+void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson,
+                        const struct grrl_learner_usage *usage);
+
+/* The other way round, for who asked: from packet->at on. False, and the result is unspecified, for
+ * bytes that are none, or with a count or an index beyond what there is room for. */
+bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
+bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
+bool onboard_get_lesson(struct onboard_packet *packet, struct grrl_lesson *lesson,
+                        struct grrl_learner_usage *usage);
 
 #endif
