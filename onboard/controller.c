@@ -99,6 +99,7 @@ static enum grrl_status take_frame(struct onboard_controller *controller,
     uint32_t start = now(controller);
     grrl_learner_observe(&controller->learner, &frame, pushing);
     count(controller, ONBOARD_STEP_FRAME, start);
+    begin_answer(controller, ONBOARD_DONE, GRRL_OK);
     return GRRL_OK;
 }
 
@@ -180,7 +181,7 @@ static void close_run(struct onboard_controller *controller)
     onboard_put(&controller->answer, controller->store_hash, 8);
 }
 
-static enum grrl_status compare(const struct onboard_controller *controller,
+static enum grrl_status compare(struct onboard_controller *controller,
                                 struct onboard_packet *packet)
 {
     uint64_t models = onboard_get(packet, 8);
@@ -188,15 +189,14 @@ static enum grrl_status compare(const struct onboard_controller *controller,
     uint64_t lessons = onboard_get(packet, 8);
     bool same = models == controller->hashes.models && decisions == controller->hashes.decisions &&
                 lessons == controller->hashes.lessons;
+    begin_answer(controller, ONBOARD_DONE, GRRL_OK);
     return same ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
-enum grrl_status onboard_controller_take(struct onboard_controller *controller,
-                                         struct onboard_packet *packet)
+static enum grrl_status take(struct onboard_controller *controller, struct onboard_packet *packet)
 {
     packet->at = 0;
     packet->bad = false;
-    controller->answer.type = 0;
     if (packet->type == ONBOARD_OPEN) {
         return open_run(controller, packet);
     }
@@ -232,4 +232,14 @@ enum grrl_status onboard_controller_take(struct onboard_controller *controller,
         return compare(controller, packet);
     }
     return GRRL_OK;
+}
+
+enum grrl_status onboard_controller_take(struct onboard_controller *controller,
+                                         struct onboard_packet *packet)
+{
+    enum grrl_status status = take(controller, packet);
+    if (status != GRRL_OK) {
+        begin_answer(controller, ONBOARD_REFUSED, status);
+    }
+    return status;
 }

@@ -4,9 +4,9 @@
 
 _Static_assert(ONBOARD_MAX_BYTES <= UINT16_MAX, "a length has 2 bytes");
 
-void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type)
+void onboard_packet_begin(struct onboard_packet *packet, uint8_t type)
 {
-    packet->type = (uint8_t)type;
+    packet->type = type;
     packet->n = 0;
     packet->at = 0;
     packet->bad = false;
@@ -54,6 +54,18 @@ float onboard_get_float(struct onboard_packet *packet)
 bool onboard_packet_used_up(const struct onboard_packet *packet)
 {
     return !packet->bad && packet->at == packet->n;
+}
+
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy)
+{
+    onboard_packet_begin(packet, ONBOARD_OPEN);
+    onboard_put(packet, GRRL_MAX_LINKS, 1);
+    onboard_put(packet, GRRL_MAX_FEATURES, 2);
+    onboard_put(packet, GRRL_MAX_KEYFRAMES, 1);
+    onboard_put(packet, ONBOARD_STATES, 2);
+    onboard_put(packet, ONBOARD_EXPERIENCES, 2);
+    onboard_put(packet, seed, 8);
+    onboard_put(packet, (uint64_t)policy, 1);
 }
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing)

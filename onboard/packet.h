@@ -2,8 +2,8 @@
  * packet.h: what goes in and out of the controller, as bytes: little-endian, whatever the machine.
  *
  * A packet is a type, a length (2 bytes) and that many bytes. A recording is a row of packets; on
- * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each but
- * a frame is answered; on a line the frame, too, with DONE.
+ * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each is
+ * answered.
  *
  *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8),
  *            policy (1)
@@ -14,7 +14,7 @@
  *   EXPECT   the hashes so far of models, decisions and lessons (8 each): in recordings only
  *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and, when it is 0, what the
  *            functions below write
- *   REFUSED  a status (1): there is no such packet, or not now. On a line only
+ *   REFUSED  a status (1): there is no such packet, or not now
  *   BAD      damaged frames so far (4): the last one is to be sent again. On a line only
  */
 #ifndef ONBOARD_PACKET_H
@@ -25,6 +25,15 @@
 #include <stdint.h>
 
 #include "grrl/learner.h"
+
+/* How many cases and how many experiences a controller remembers, and states these are made in; a
+ * state for each is the most that can be needed. */
+#ifndef ONBOARD_EXPERIENCES
+#define ONBOARD_EXPERIENCES 256
+#endif
+#ifndef ONBOARD_STATES
+#define ONBOARD_STATES ONBOARD_EXPERIENCES
+#endif
 
 enum onboard_packet_type {
     ONBOARD_OPEN = 1,
@@ -67,7 +76,7 @@ struct onboard_points {
 };
 
 /* Begins to write a packet. */
-void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type);
+void onboard_packet_begin(struct onboard_packet *packet, uint8_t type);
 
 void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes);
 void onboard_put_float(struct onboard_packet *packet, float value);
@@ -78,6 +87,9 @@ float onboard_get_float(struct onboard_packet *packet);
 
 /* Whether all was read and nothing beyond. */
 bool onboard_packet_used_up(const struct onboard_packet *packet);
+
+/* OPEN, for a controller with the capacities of whoever calls this. */
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy);
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing);
 

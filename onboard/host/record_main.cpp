@@ -72,14 +72,7 @@ void expect(Run &run)
 void open(Run &run, uint64_t seed, grrl_policy_kind policy)
 {
     onboard_controller_init(run.controller.get(), nullptr);
-    onboard_packet_begin(&run.packet, ONBOARD_OPEN);
-    onboard_put(&run.packet, GRRL_MAX_LINKS, 1);
-    onboard_put(&run.packet, GRRL_MAX_FEATURES, 2);
-    onboard_put(&run.packet, GRRL_MAX_KEYFRAMES, 1);
-    onboard_put(&run.packet, ONBOARD_STATES, 2);
-    onboard_put(&run.packet, ONBOARD_EXPERIENCES, 2);
-    onboard_put(&run.packet, seed, 8);
-    onboard_put(&run.packet, policy, 1);
+    onboard_put_open(&run.packet, seed, policy);
     send(run);
 }
 
