@@ -16,9 +16,9 @@ struct onboard_server {
     uint32_t damaged;  /* frames since the start */
     uint32_t repeated; /* requests that came again */
     uint8_t line[ONBOARD_LINK_BYTES];
+    struct onboard_packet request; /* being received */
     /* private */
     struct onboard_receiver receiver;
-    struct onboard_packet request;
     uint8_t done; /* number of the last request, whose answer is the controller's; 0: OPEN */
 };
 
