@@ -43,7 +43,7 @@ static void count(struct onboard_controller *controller, enum onboard_step step,
 static void begin_answer(struct onboard_controller *controller, enum onboard_packet_type type,
                          enum grrl_status status)
 {
-    onboard_packet_begin(&controller->answer, type);
+    onboard_packet_begin(&controller->answer, (uint8_t)type);
     onboard_put(&controller->answer, (uint8_t)status, 1);
 }
 

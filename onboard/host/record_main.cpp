@@ -54,7 +54,7 @@ bool send(Run &run)
 
 bool send(Run &run, onboard_packet_type type, uint64_t value = 0, unsigned bytes = 0)
 {
-    onboard_packet_begin(&run.packet, type);
+    onboard_packet_begin(&run.packet, static_cast<uint8_t>(type));
     onboard_put(&run.packet, value, bytes);
     return send(run);
 }
