@@ -25,6 +25,8 @@ foreach(target cortex-m4 riscv64)
             FIXTURES_REQUIRED "onboard_recording;onboard_${target}")
     endforeach()
 endforeach()
+onboard_check(units_riscv64 ${checks}/units.sh ${folder} riscv64)
+set_tests_properties(onboard_units_riscv64 PROPERTIES FIXTURES_REQUIRED onboard_riscv64)
 onboard_check(live ${checks}/live.sh ${folder} $<TARGET_FILE:grrl-agent>
               $<TARGET_FILE:grrl-bridge> $<TARGET_FILE:grrl-sim>)
 set_tests_properties(onboard_live PROPERTIES FIXTURES_REQUIRED onboard_cortex-m4)
