@@ -28,5 +28,6 @@ endforeach()
 onboard_check(units_riscv64 ${checks}/units.sh ${folder} riscv64)
 set_tests_properties(onboard_units_riscv64 PROPERTIES FIXTURES_REQUIRED onboard_riscv64)
 onboard_check(live ${checks}/live.sh ${folder} $<TARGET_FILE:grrl-agent>
-              $<TARGET_FILE:grrl-bridge> $<TARGET_FILE:grrl-sim>)
+              $<TARGET_FILE:grrl-bridge> $<TARGET_FILE:grrl-sim>
+              $<TARGET_FILE:grrl-record> $<TARGET_FILE:grrl-replay>)
 set_tests_properties(onboard_live PROPERTIES FIXTURES_REQUIRED onboard_cortex-m4)
