@@ -108,8 +108,8 @@ _Noreturn void reset(void)
     machine_exit((uint32_t)main());
 }
 
-/* The interrupt of a received byte ends the wait and is never taken; elsewhere it stays off, because
- * with interrupts masked every fault would count as a hard one. */
+/* The interrupt of a received byte ends the wait and is never taken; elsewhere it stays off,
+ * because with interrupts masked every fault would count as a hard one. */
 uint8_t machine_serial_get(void)
 {
     __asm__ volatile("cpsid i");

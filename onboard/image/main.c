@@ -3,6 +3,7 @@
  *
  *   replay FILE   runs a recording and tells its hashes and what it cost, a name and numbers a line
  *   serve         is the controller behind the serial line; tells after each run what it took
+ *   worst         tells what decisions cost at full capacity
  *   fault NAME    provokes a fault
  */
 #include <string.h>
@@ -10,6 +11,7 @@
 #include "machine.h"
 #include "replay.h"
 #include "server.h"
+#include "worst.h"
 
 static struct onboard_controller controller;
 static struct onboard_server server;
@@ -168,6 +170,12 @@ int main(void)
     if (strncmp(first, "replay ", 7) == 0) {
         return replay(first + 7);
     }
-    machine_write("arguments: replay FILE, serve, or fault NAME\n");
+    if (strcmp(first, "worst") == 0) {
+        write_line("worst learn", machine_instructions(worst_of_cases(&controller, machine_count)));
+        write_line("worst paper",
+                   machine_instructions(worst_of_experiences(&controller, machine_count)));
+        return EXIT_FINE;
+    }
+    machine_write("arguments: replay FILE, serve, worst, or fault NAME\n");
     return EXIT_USAGE;
 }

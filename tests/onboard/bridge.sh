@@ -40,6 +40,28 @@ echo "$line"
 grep -q 'damaged frames: 0 out, 0 in; 0 requests sent again, 0 answers' clean-agent.txt ||
     fail "damage on a clean line"
 
+# The bridge has no learning in it; the agent has, so that these names mean something.
+learning=' T grrl_(cases_learn|experience_update|policy_choose|perception_update|grounding_push)$'
+[ "$(nm "$AGENT" | grep -cE "$learning")" -eq 5 ] || fail "grrl-agent does not learn?"
+! nm "$BRIDGE" | grep -E "$learning" || fail "grrl-bridge learns by itself"
+
+# A controller that goes away ends the bridge.
+url='udpm://239.255.76.67:7744?ttl=0'
+start gone-controller "$CONTROLLER" --socket gone.socket
+controller=$LAST
+start gone-agent timeout 60 "$BRIDGE" --lcm-url "$url" --serial gone.socket
+bridge=$LAST
+start gone-sim "$SIM" --lcm-url "$url" --object RPRPRPR --trials 1000 --results gone.csv
+for _ in $(seq 1500); do
+    [ "$(wc -l <gone.csv 2>/dev/null || echo 0)" -ge 2 ] && break
+    sleep 0.02
+done
+kill -9 "$controller"
+status=0
+wait "$bridge" || status=$?
+[ "$status" -eq 1 ] || fail "grrl-bridge ended with $status and not 1"
+grep -q 'gone.socket: ' gone-agent.txt || fail "not a word of the line that is gone"
+
 # What is wrong is said.
 expect() {
     local status=$1 text=$2 got=0
@@ -48,7 +70,6 @@ expect() {
     [ "$got" -eq "$status" ] || fail "exit status $got and not $status of: $*"
     grep -q -- "$text" said.txt || fail "not a word of \"$text\" from: $*"
 }
-url='udpm://239.255.76.67:7744?ttl=0'
 expect 0 'Usage: grrl-bridge' "$BRIDGE" --help
 expect 0 'grrl-bridge [0-9]' "$BRIDGE" --version
 expect 2 'serial is needed' "$BRIDGE"
