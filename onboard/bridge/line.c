@@ -63,7 +63,7 @@ static int open_device(const char *path)
     return fd;
 }
 
-void bridge_line_use(struct bridge_line *line, const char *path, int fd)
+static void begin(struct bridge_line *line, const char *path, int fd)
 {
     memset(line, 0, sizeof *line);
     line->path = path;
@@ -79,7 +79,7 @@ bool bridge_line_open(struct bridge_line *line, const char *path, int wait_ms)
         bool there = stat(path, &about) == 0;
         int fd = there && S_ISCHR(about.st_mode) ? open_device(path) : connect_to(path);
         int reason = errno;
-        bridge_line_use(line, path, fd);
+        begin(line, path, fd);
         if (fd >= 0)
             return true;
         if ((reason != ENOENT && reason != ECONNREFUSED) || now_ms() >= until)
@@ -111,12 +111,6 @@ static bool send_request(struct bridge_line *line)
         at += written > 0 ? (size_t)written : 0;
     }
     return true;
-}
-
-static bool resend(struct bridge_line *line)
-{
-    line->counts.resent++;
-    return send_request(line);
 }
 
 /* One good frame; whether it is the answer. BAD: what was asked did not arrive. */
@@ -186,14 +180,13 @@ bool bridge_line_ask(struct bridge_line *line)
         int64_t left = sent + wait - now_ms();
         if (receive(line, left > 0 ? (int)left : 0, &again))
             return true;
-        if (line->failed)
-            return false;
-        if (now_ms() - start > SILENCE_MS)
+        if (!line->failed && now_ms() - start > SILENCE_MS)
             return fail(line, "the controller does not answer; is the image running?");
-        if (again || now_ms() - sent >= wait) {
+        if (!line->failed && (again || now_ms() - sent >= wait)) {
             wait = again || wait >= LONGEST_RESEND_MS ? wait : 2 * wait;
             sent = now_ms();
-            (void)resend(line);
+            line->counts.resent++;
+            (void)send_request(line);
         }
     }
     return false;

@@ -41,9 +41,6 @@ struct bridge_line {
  */
 bool bridge_line_open(struct bridge_line *line, const char *path, int wait_ms);
 
-/* As bridge_line_open, on what is open already. */
-void bridge_line_use(struct bridge_line *line, const char *path, int fd);
-
 /* Sends line->request and waits for its answer. False, now and from then on: line->why. */
 bool bridge_line_ask(struct bridge_line *line);
 

@@ -35,5 +35,7 @@ END {
         256)
     if (over != "")
         print "over the limit:" over > "/dev/stderr"
-    exit over != "" || n["learn", "choose"] == 0 || n["paper", "choose"] == 0 || static == "" || worst["learn"] == 0 || worst["paper"] == 0
+    missing = n["learn", "choose"] == 0 || n["paper", "choose"] == 0 || worst["learn"] == 0 ||
+              worst["paper"] == 0 || static == ""
+    exit over != "" || missing
 }

@@ -26,7 +26,8 @@ $SOURCE/onboard/image/main.c:read_input" -f "$SOURCE/onboard/check/stack.awk" "$
 
 emulate "$target" "$image" worst | tee "$folder/$target.worst"
 "${CROSS}size" -A -d "$image" >"$folder/$target.size"
-awk -v target="$target" -f "$SOURCE/onboard/check/budget.awk" policy=learn "$folder/$target-learn.txt" \
-    policy=paper "$folder/$target-paper.txt" "$folder/$target.stack" "$folder/$target.size" "$folder/$target.worst" \
+awk -v target="$target" -f "$SOURCE/onboard/check/budget.awk" \
+    policy=learn "$folder/$target-learn.txt" policy=paper "$folder/$target-paper.txt" \
+    "$folder/$target.stack" "$folder/$target.size" "$folder/$target.worst" \
     >"$folder/$target.rows" || fail "over the budget"
 awk -f "$SOURCE/onboard/check/table.awk" target="$target" "$folder/$target.rows"
