@@ -1,23 +1,13 @@
-/* grrl-agent: options, files, signals and lines on the terminal around the agent's core. */
-#define _POSIX_C_SOURCE 200809L
-
-#include <fcntl.h>
+/* grrl-agent: options, files and lines on the terminal around the agent's core. */
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 #include "agent.h"
 #include "options.h"
+#include "process.h"
 #include "store_file.h"
-
-/* How long one lcm_handle_timeout waits; the tick needs 100 ms. */
-enum { POLL_MS = 50 };
-
-static volatile sig_atomic_t stop;
 
 static struct grrl_agent agent; /* large, and there is one */
 
@@ -27,34 +17,6 @@ struct run {
     int32_t trials; /* that count */
     int64_t pushes; /* in them */
 };
-
-static void on_signal(int number)
-{
-    (void)number;
-    stop = 1;
-}
-
-static int64_t now_us(void *context)
-{
-    struct timespec now;
-    (void)context;
-    (void)clock_gettime(CLOCK_REALTIME, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
-}
-
-static int64_t random_session(void)
-{
-    int64_t session = 0;
-    int fd = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
-    if (fd >= 0) {
-        if (read(fd, &session, sizeof session) != (ssize_t)sizeof session)
-            session = 0;
-        (void)close(fd);
-    }
-    session ^= now_us(NULL) ^ (int64_t)getpid() << 32;
-    session &= INT64_MAX;
-    return session != 0 ? session : 1;
-}
 
 static void save(struct run *run)
 {
@@ -119,36 +81,14 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     (void)fflush(stdout);
 }
 
-static lcm_t *open_lcm(const char *url)
-{
-    lcm_t *lcm = lcm_create(url);
-    if (lcm != NULL && lcm_get_fileno(lcm) >= 0)
-        return lcm;
-    (void)fprintf(stderr, "grrl-agent: LCM does not start. If this machine has no network:\n"
-                          "  ip link set lo up; ip route add 224.0.0.0/4 dev lo\n"
-                          "or name another provider with --lcm-url.\n");
-    if (lcm != NULL)
-        lcm_destroy(lcm);
-    return NULL;
-}
-
-static void catch_signals(void)
-{
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
-    (void)sigaction(SIGINT, &action, NULL);
-    (void)sigaction(SIGTERM, &action, NULL);
-}
-
 /* Until the trials are over, the log ends, a signal comes or LCM fails. */
 static void loop(struct run *run, lcm_t *lcm)
 {
     const char *url = run->options.lcm_url;
     const char *used = url != NULL ? url : getenv("LCM_DEFAULT_URL");
     bool is_log = used != NULL && strncmp(used, "file://", 7) == 0;
-    while (!stop && !run->failed && !grrl_agent_finished(&agent)) {
-        if (lcm_handle_timeout(lcm, POLL_MS) < 0 && !stop) {
+    while (!grrl_process_stopped() && !run->failed && !grrl_agent_finished(&agent)) {
+        if (lcm_handle_timeout(lcm, GRRL_PROCESS_POLL_MS) < 0 && !grrl_process_stopped()) {
             if (!is_log) {
                 (void)fprintf(stderr, "grrl-agent: LCM fails to receive\n");
                 run->failed = true;
@@ -182,9 +122,9 @@ static int run_agent(struct run *run)
 {
     struct grrl_agent_config config = {
         .learner = run->options.learner,
-        .session_id = random_session(),
+        .session_id = grrl_process_random_session(),
         .observe = run->options.observe,
-        .now_us = now_us,
+        .now_us = grrl_process_now_us,
         .on_event = on_event,
         .context = run,
         .memory = {.cases_capacity = run->options.experiences,
@@ -198,7 +138,7 @@ static int run_agent(struct run *run)
     lcm_t *lcm = NULL;
     bool started = false;
     if (memory->cases != NULL && memory->states != NULL && memory->experiences != NULL)
-        lcm = open_lcm(run->options.lcm_url);
+        lcm = grrl_process_open_lcm("grrl-agent", run->options.lcm_url);
     if (lcm != NULL)
         started = start(run, &config, lcm);
     if (started) {
@@ -225,7 +165,7 @@ int main(int argc, char **argv)
     case GRRL_OPTIONS_RUN:
         break;
     }
-    catch_signals();
+    grrl_process_catch_signals();
     int status = run_agent(&run);
     if (run.trials > 0 && !run.options.quiet)
         (void)printf("%" PRId32 " trials, %.2f pushes on average\n", run.trials,

@@ -8,3 +8,5 @@ set(GRRL_ONBOARD_TARGET riscv64)
 set(grrl_machine --specs=picolibc.specs -march=rv64imafc -mabi=lp64f -mcmodel=medany)
 add_compile_options(${grrl_machine} -ffunction-sections -fdata-sections -fno-math-errno)
 add_link_options(${grrl_machine})
+set(CMAKE_CROSSCOMPILING_EMULATOR qemu-system-riscv64 -M virt -m 64M -bios none -display none
+    -monitor none -serial none -semihosting-config enable=on,target=native -kernel)

@@ -43,7 +43,7 @@ static void count(struct onboard_controller *controller, enum onboard_step step,
 static void begin_answer(struct onboard_controller *controller, enum onboard_packet_type type,
                          enum grrl_status status)
 {
-    onboard_packet_begin(&controller->answer, type);
+    onboard_packet_begin(&controller->answer, (uint8_t)type);
     onboard_put(&controller->answer, (uint8_t)status, 1);
 }
 
@@ -63,9 +63,11 @@ static enum grrl_status open_run(struct onboard_controller *controller,
     struct grrl_learner_config config;
     grrl_learner_config_default(&config);
     config.seed = onboard_get(packet, 8);
-    if (!onboard_packet_used_up(packet)) {
+    uint64_t policy = onboard_get(packet, 1);
+    if (!onboard_packet_used_up(packet) || policy > GRRL_POLICY_RANDOM) {
         return GRRL_ERR_FORMAT;
     }
+    config.policy.kind = (enum grrl_policy_kind)policy;
     if (links != GRRL_MAX_LINKS || features != GRRL_MAX_FEATURES ||
         keyframes != GRRL_MAX_KEYFRAMES || states != ONBOARD_STATES ||
         experiences != ONBOARD_EXPERIENCES) {
@@ -97,6 +99,7 @@ static enum grrl_status take_frame(struct onboard_controller *controller,
     uint32_t start = now(controller);
     grrl_learner_observe(&controller->learner, &frame, pushing);
     count(controller, ONBOARD_STEP_FRAME, start);
+    begin_answer(controller, ONBOARD_DONE, GRRL_OK);
     return GRRL_OK;
 }
 
@@ -151,7 +154,8 @@ static void learn(struct onboard_controller *controller, struct onboard_packet *
     count(controller, ONBOARD_STEP_LEARN, start);
     begin_answer(controller, ONBOARD_LESSON, status);
     if (status == GRRL_OK) {
-        onboard_put_lesson(&controller->answer, &lesson);
+        const struct grrl_learner_usage usage = grrl_learner_usage(&controller->learner);
+        onboard_put_lesson(&controller->answer, &lesson, &usage);
     }
     add_answer(controller, &controller->hashes.lessons);
 }
@@ -177,7 +181,7 @@ static void close_run(struct onboard_controller *controller)
     onboard_put(&controller->answer, controller->store_hash, 8);
 }
 
-static enum grrl_status compare(const struct onboard_controller *controller,
+static enum grrl_status compare(struct onboard_controller *controller,
                                 struct onboard_packet *packet)
 {
     uint64_t models = onboard_get(packet, 8);
@@ -185,15 +189,14 @@ static enum grrl_status compare(const struct onboard_controller *controller,
     uint64_t lessons = onboard_get(packet, 8);
     bool same = models == controller->hashes.models && decisions == controller->hashes.decisions &&
                 lessons == controller->hashes.lessons;
+    begin_answer(controller, ONBOARD_DONE, GRRL_OK);
     return same ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
-enum grrl_status onboard_controller_take(struct onboard_controller *controller,
-                                         struct onboard_packet *packet)
+static enum grrl_status take(struct onboard_controller *controller, struct onboard_packet *packet)
 {
     packet->at = 0;
     packet->bad = false;
-    controller->answer.type = 0;
     if (packet->type == ONBOARD_OPEN) {
         return open_run(controller, packet);
     }
@@ -229,4 +232,14 @@ enum grrl_status onboard_controller_take(struct onboard_controller *controller,
         return compare(controller, packet);
     }
     return GRRL_OK;
+}
+
+enum grrl_status onboard_controller_take(struct onboard_controller *controller,
+                                         struct onboard_packet *packet)
+{
+    enum grrl_status status = take(controller, packet);
+    if (status != GRRL_OK) {
+        begin_answer(controller, ONBOARD_REFUSED, status);
+    }
+    return status;
 }

@@ -11,15 +11,6 @@
 
 #include "packet.h"
 
-/* How many experiences and how many states they are made in; a state for each is the most that
- * can be needed. */
-#ifndef ONBOARD_EXPERIENCES
-#define ONBOARD_EXPERIENCES 256
-#endif
-#ifndef ONBOARD_STATES
-#define ONBOARD_STATES ONBOARD_EXPERIENCES
-#endif
-
 /* Nodes and characters for the believed structure as a term. */
 enum { ONBOARD_TERM_NODES = 128, ONBOARD_TERM_BYTES = 1024 };
 
@@ -66,7 +57,7 @@ struct onboard_controller {
 void onboard_controller_init(struct onboard_controller *controller, uint32_t (*count)(void));
 
 /*
- * Does what the packet says. The answer, of type 0 if there is none, is in controller->answer.
+ * Does what the packet says. The answer is in controller->answer: REFUSED after a failure.
  * GRRL_ERR_FORMAT: no such packet, or not of its length; GRRL_ERR_VERSION: a run of other
  * capacities; GRRL_ERR_ORDER: not open; GRRL_ERR_CORRUPT: the hashes so far are not the expected
  * ones. What the learner itself says is no failure but the status in the answer.

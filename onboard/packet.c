@@ -4,9 +4,9 @@
 
 _Static_assert(ONBOARD_MAX_BYTES <= UINT16_MAX, "a length has 2 bytes");
 
-void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type)
+void onboard_packet_begin(struct onboard_packet *packet, uint8_t type)
 {
-    packet->type = (uint8_t)type;
+    packet->type = type;
     packet->n = 0;
     packet->at = 0;
     packet->bad = false;
@@ -54,6 +54,18 @@ float onboard_get_float(struct onboard_packet *packet)
 bool onboard_packet_used_up(const struct onboard_packet *packet)
 {
     return !packet->bad && packet->at == packet->n;
+}
+
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy)
+{
+    onboard_packet_begin(packet, ONBOARD_OPEN);
+    onboard_put(packet, GRRL_MAX_LINKS, 1);
+    onboard_put(packet, GRRL_MAX_FEATURES, 2);
+    onboard_put(packet, GRRL_MAX_KEYFRAMES, 1);
+    onboard_put(packet, ONBOARD_STATES, 2);
+    onboard_put(packet, ONBOARD_EXPERIENCES, 2);
+    onboard_put(packet, seed, 8);
+    onboard_put(packet, (uint64_t)policy, 1);
 }
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing)
@@ -140,30 +152,150 @@ void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *m
 void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision)
 {
     const struct grrl_choice *choice = &decision->choice;
-    onboard_put(packet, choice->link, 1);
-    onboard_put(packet, choice->direction, 1);
-    onboard_put(packet, choice->reason, 1);
-    onboard_put(packet, choice->from.experience, 2);
-    onboard_put(packet, choice->from.level, 1);
-    onboard_put(packet, choice->from.distance, 1);
-    onboard_put(packet, choice->from.dropped, 1);
-    onboard_put(packet, choice->from.stored_link, 1);
-    onboard_put_float(packet, choice->value);
-    onboard_put_float(packet, choice->lower);
-    onboard_put_float(packet, choice->upper);
-    onboard_put_float(packet, choice->phi);
-    onboard_put(packet, decision->body_number, 2);
     put_vec2(packet, decision->push.start_m);
     put_vec2(packet, decision->push.end_m);
     onboard_put_float(packet, decision->push.travel_m);
     onboard_put_float(packet, decision->push.speed_m_s);
     onboard_put_float(packet, decision->push.force_n);
     onboard_put_float(packet, decision->push.timeout_s);
+    onboard_put(packet, decision->body_number, 2);
+    onboard_put(packet, choice->link, 1);
+    onboard_put(packet, choice->direction, 1);
+    onboard_put(packet, choice->reason, 1);
+    onboard_put(packet, choice->from.experience, 4);
+    onboard_put(packet, choice->from.level, 1);
+    onboard_put(packet, choice->from.distance, 1);
+    onboard_put(packet, choice->from.dropped, 1);
+    onboard_put(packet, choice->from.stored_link, 1);
+    onboard_put(packet, choice->closest_case, 4);
+    onboard_put(packet, choice->mismatches, 1);
+    onboard_put_float(packet, choice->value);
+    onboard_put_float(packet, choice->lower);
+    onboard_put_float(packet, choice->upper);
+    onboard_put_float(packet, choice->phi);
 }
 
-void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson)
+void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson,
+                        const struct grrl_learner_usage *usage)
 {
     onboard_put_float(packet, lesson->reward);
     onboard_put_float(packet, lesson->target);
-    onboard_put(packet, lesson->experience, 2);
+    onboard_put(packet, lesson->experience, 4);
+    onboard_put(packet, lesson->updated_case, 4);
+    onboard_put(packet, usage->n, 4);
+    onboard_put(packet, usage->capacity, 4);
+    onboard_put(packet, usage->evictions, 4);
+}
+
+static struct grrl_vec2 get_vec2(struct onboard_packet *packet)
+{
+    float x = onboard_get_float(packet);
+    return (struct grrl_vec2){x, onboard_get_float(packet)};
+}
+
+static uint8_t get_byte(struct onboard_packet *packet)
+{
+    return (uint8_t)onboard_get(packet, 1);
+}
+
+static void get_body(struct onboard_packet *packet, struct grrl_body *body)
+{
+    body->number = (uint16_t)onboard_get(packet, 2);
+    body->n_features = (uint16_t)onboard_get(packet, 2);
+    body->centroid_m = get_vec2(packet);
+    body->axis = get_vec2(packet);
+    body->length_m = onboard_get_float(packet);
+    body->width_m = onboard_get_float(packet);
+    body->properties = onboard_get(packet, 8);
+}
+
+static void get_joint(struct onboard_packet *packet, struct grrl_joint *joint)
+{
+    joint->a = get_byte(packet);
+    joint->b = get_byte(packet);
+    joint->type = get_byte(packet);
+    joint->probability = onboard_get_float(packet);
+    joint->p_revolute = onboard_get_float(packet);
+    joint->p_prismatic = onboard_get_float(packet);
+    joint->p_disconnected = onboard_get_float(packet);
+    joint->point_m = get_vec2(packet);
+    for (int i = 0; i < 3; i++) {
+        joint->point_cov_m2[i] = onboard_get_float(packet);
+    }
+    joint->axis = get_vec2(packet);
+    joint->axis_sd_rad = onboard_get_float(packet);
+    joint->lower = onboard_get_float(packet);
+    joint->upper = onboard_get_float(packet);
+}
+
+bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model)
+{
+    model->n_bodies = get_byte(packet);
+    model->n_joints = get_byte(packet);
+    model->n_features = (uint16_t)onboard_get(packet, 2);
+    if (model->n_bodies > GRRL_MAX_LINKS || model->n_joints > GRRL_MAX_JOINTS ||
+        model->n_features > GRRL_MAX_FEATURES) {
+        return false;
+    }
+    bool fine = true;
+    for (int i = 0; i < model->n_bodies; i++) {
+        get_body(packet, &model->body[i]);
+    }
+    for (int i = 0; i < model->n_joints; i++) {
+        struct grrl_joint *joint = &model->joint[i];
+        get_joint(packet, joint);
+        fine = fine && joint->a < model->n_bodies && joint->b < model->n_bodies &&
+               joint->type < GRRL_JOINT_TYPES;
+    }
+    for (int i = 0; i < model->n_features; i++) {
+        uint32_t id = (uint32_t)onboard_get(packet, 4);
+        memcpy(&model->feature_id[i], &id, sizeof id);
+        model->feature_m[i] = get_vec2(packet);
+        uint8_t body = get_byte(packet);
+        model->feature_body[i] = body;
+        fine = fine && (body < model->n_bodies || body == GRRL_FEATURE_BACKGROUND ||
+                        body == GRRL_FEATURE_NONE);
+    }
+    return fine && onboard_packet_used_up(packet);
+}
+
+bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision)
+{
+    struct grrl_choice *choice = &decision->choice;
+    decision->push.start_m = get_vec2(packet);
+    decision->push.end_m = get_vec2(packet);
+    decision->push.travel_m = onboard_get_float(packet);
+    decision->push.speed_m_s = onboard_get_float(packet);
+    decision->push.force_n = onboard_get_float(packet);
+    decision->push.timeout_s = onboard_get_float(packet);
+    decision->body_number = (uint16_t)onboard_get(packet, 2);
+    choice->link = get_byte(packet);
+    choice->direction = get_byte(packet);
+    choice->reason = get_byte(packet);
+    choice->from.experience = (uint32_t)onboard_get(packet, 4);
+    choice->from.level = get_byte(packet);
+    choice->from.distance = get_byte(packet);
+    choice->from.dropped = get_byte(packet);
+    choice->from.stored_link = get_byte(packet);
+    choice->closest_case = (uint32_t)onboard_get(packet, 4);
+    choice->mismatches = get_byte(packet);
+    choice->value = onboard_get_float(packet);
+    choice->lower = onboard_get_float(packet);
+    choice->upper = onboard_get_float(packet);
+    choice->phi = onboard_get_float(packet);
+    return onboard_packet_used_up(packet) && choice->link < GRRL_MAX_LINKS &&
+           choice->direction < GRRL_DIRECTIONS && choice->reason <= GRRL_CHOICE_FOREIGN;
+}
+
+bool onboard_get_lesson(struct onboard_packet *packet, struct grrl_lesson *lesson,
+                        struct grrl_learner_usage *usage)
+{
+    lesson->reward = onboard_get_float(packet);
+    lesson->target = onboard_get_float(packet);
+    lesson->experience = (uint32_t)onboard_get(packet, 4);
+    lesson->updated_case = (uint32_t)onboard_get(packet, 4);
+    usage->n = (uint32_t)onboard_get(packet, 4);
+    usage->capacity = (uint32_t)onboard_get(packet, 4);
+    usage->evictions = (uint32_t)onboard_get(packet, 4);
+    return onboard_packet_used_up(packet);
 }

@@ -2,16 +2,20 @@
  * packet.h: what goes in and out of the controller, as bytes: little-endian, whatever the machine.
  *
  * A packet is a type, a length (2 bytes) and that many bytes. A recording is a row of packets; on
- * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each but
- * a frame is answered.
+ * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each is
+ * answered.
  *
- *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8)
+ *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8),
+ *            policy (1)
  *   TRIAL    number (4)
  *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
  *   PERCEIVE, CHOOSE, CLOSE    nothing
  *   LEARN    ended (1)
  *   EXPECT   the hashes so far of models, decisions and lessons (8 each): in recordings only
- *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and then as written below
+ *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and, when it is 0, what the
+ *            functions below write
+ *   REFUSED  a status (1): there is no such packet, or not now
+ *   BAD      damaged frames so far (4): the last one is to be sent again. On a line only
  */
 #ifndef ONBOARD_PACKET_H
 #define ONBOARD_PACKET_H
@@ -21,6 +25,15 @@
 #include <stdint.h>
 
 #include "grrl/learner.h"
+
+/* How many cases and how many experiences a controller remembers, and states these are made in; a
+ * state for each is the most that can be needed. */
+#ifndef ONBOARD_EXPERIENCES
+#define ONBOARD_EXPERIENCES 256
+#endif
+#ifndef ONBOARD_STATES
+#define ONBOARD_STATES ONBOARD_EXPERIENCES
+#endif
 
 enum onboard_packet_type {
     ONBOARD_OPEN = 1,
@@ -35,7 +48,9 @@ enum onboard_packet_type {
     ONBOARD_MODEL,
     ONBOARD_DECISION,
     ONBOARD_LESSON,
-    ONBOARD_STORE
+    ONBOARD_STORE,
+    ONBOARD_REFUSED,
+    ONBOARD_BAD
 };
 
 /* The most bytes of a packet: a model with everything in it, or a frame. */
@@ -61,7 +76,7 @@ struct onboard_points {
 };
 
 /* Begins to write a packet. */
-void onboard_packet_begin(struct onboard_packet *packet, enum onboard_packet_type type);
+void onboard_packet_begin(struct onboard_packet *packet, uint8_t type);
 
 void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes);
 void onboard_put_float(struct onboard_packet *packet, float value);
@@ -73,6 +88,9 @@ float onboard_get_float(struct onboard_packet *packet);
 /* Whether all was read and nothing beyond. */
 bool onboard_packet_used_up(const struct onboard_packet *packet);
 
+/* OPEN, for a controller with the capacities of whoever calls this. */
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy);
+
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing);
 
 /* False, and an empty frame, for a packet that is none or holds more points than there is room. */
@@ -81,6 +99,14 @@ bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *poi
 
 void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model);
 void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision);
-void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson);
+void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson,
+                        const struct grrl_learner_usage *usage);
+
+/* The other way round, for who asked: from packet->at on. False, and the result is unspecified, for
+ * bytes that are none, or with a count or an index beyond what there is room for. */
+bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
+bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
+bool onboard_get_lesson(struct onboard_packet *packet, struct grrl_lesson *lesson,
+                        struct grrl_learner_usage *usage);
 
 #endif

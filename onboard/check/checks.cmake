@@ -1,4 +1,5 @@
-# A run is recorded once; each target then replays it. What is not installed is skipped.
+# A run of each policy is recorded once; each target then replays both. What is not installed is
+# skipped.
 set(checks ${CMAKE_CURRENT_LIST_DIR})
 set(folder ${CMAKE_CURRENT_BINARY_DIR}/runs)
 function(onboard_check name)
@@ -24,3 +25,9 @@ foreach(target cortex-m4 riscv64)
             FIXTURES_REQUIRED "onboard_recording;onboard_${target}")
     endforeach()
 endforeach()
+onboard_check(units_riscv64 ${checks}/units.sh ${folder} riscv64)
+set_tests_properties(onboard_units_riscv64 PROPERTIES FIXTURES_REQUIRED onboard_riscv64)
+onboard_check(live ${checks}/live.sh ${folder} $<TARGET_FILE:grrl-agent>
+              $<TARGET_FILE:grrl-bridge> $<TARGET_FILE:grrl-sim>
+              $<TARGET_FILE:grrl-record> $<TARGET_FILE:grrl-replay>)
+set_tests_properties(onboard_live PROPERTIES FIXTURES_REQUIRED onboard_cortex-m4)

@@ -1,6 +1,8 @@
 # shellcheck shell=bash
 # Sourced by the checks in this folder. Exit status: 0 fine, 1 failed, 77 skipped.
 set -euo pipefail
+# shellcheck disable=SC2034
+POLICIES="learn paper"
 SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
 
 fail() {

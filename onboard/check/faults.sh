@@ -14,5 +14,6 @@ for pair in $codes; do
     [ "$code" -eq "${pair#*=}" ] || fail "${pair%=*} must exit with ${pair#*=}"
 done
 code=0
-emulate "$target" "$folder/$target/onboard/grrl-image" "$folder/pushes.txt" >/dev/null || code=$?
+emulate "$target" "$folder/$target/onboard/grrl-image" replay "$folder/learn.pushes" >/dev/null ||
+    code=$?
 [ "$code" -eq 1 ] || fail "what is no recording must exit with 1, not $code"

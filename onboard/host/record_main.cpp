@@ -1,5 +1,5 @@
-/* grrl-record OBJECT TRIALS SEED RECORDING: a learning run of the simulated world and the
- * controller in one process, as the packets the controller was given. */
+/* grrl-record OBJECT TRIALS SEED POLICY RECORDING: a run of the simulated world and the controller
+ * in one process, as the packets the controller was given. */
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -54,7 +54,7 @@ bool send(Run &run)
 
 bool send(Run &run, onboard_packet_type type, uint64_t value = 0, unsigned bytes = 0)
 {
-    onboard_packet_begin(&run.packet, type);
+    onboard_packet_begin(&run.packet, static_cast<uint8_t>(type));
     onboard_put(&run.packet, value, bytes);
     return send(run);
 }
@@ -69,16 +69,10 @@ void expect(Run &run)
     write(run);
 }
 
-void open(Run &run, uint64_t seed)
+void open(Run &run, uint64_t seed, grrl_policy_kind policy)
 {
     onboard_controller_init(run.controller.get(), nullptr);
-    onboard_packet_begin(&run.packet, ONBOARD_OPEN);
-    onboard_put(&run.packet, GRRL_MAX_LINKS, 1);
-    onboard_put(&run.packet, GRRL_MAX_FEATURES, 2);
-    onboard_put(&run.packet, GRRL_MAX_KEYFRAMES, 1);
-    onboard_put(&run.packet, ONBOARD_STATES, 2);
-    onboard_put(&run.packet, ONBOARD_EXPERIENCES, 2);
-    onboard_put(&run.packet, seed, 8);
+    onboard_put_open(&run.packet, seed, policy);
     send(run);
 }
 
@@ -110,19 +104,19 @@ void settle(Run &run, World &world)
 void push(Run &run, World &world)
 {
     onboard_packet &answer = run.controller->answer;
-    answer.at = 1 + 9 + 16 + 2; /* after status, choice and body number: see packet.c */
-    PushCommand command;
-    auto next = [&answer] { return static_cast<double>(onboard_get_float(&answer)); };
-    command.start_m.x = next();
-    command.start_m.y = next();
-    command.end_m.x = next();
-    command.end_m.y = next();
-    command.travel_m = next();
-    command.speed_m_s = next();
-    command.force_limit_n = next();
-    command.timeout_s = next();
-    if (!onboard_packet_used_up(&answer))
+    answer.at = 1; /* after the status */
+    grrl_decision decision;
+    if (!onboard_get_decision(&answer, &decision))
         run.failed = true;
+    const grrl_push &chosen = decision.push;
+    PushCommand command;
+    command.start_m = {static_cast<double>(chosen.start_m.x),
+                       static_cast<double>(chosen.start_m.y)};
+    command.end_m = {static_cast<double>(chosen.end_m.x), static_cast<double>(chosen.end_m.y)};
+    command.travel_m = static_cast<double>(chosen.travel_m);
+    command.speed_m_s = static_cast<double>(chosen.speed_m_s);
+    command.force_limit_n = static_cast<double>(chosen.force_n);
+    command.timeout_s = static_cast<double>(chosen.timeout_s);
     if (!world.begin_push(command).empty())
         return;
     bool moving = true;
@@ -169,8 +163,9 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, uint32_t number)
 
 int main(int argc, char **argv)
 {
-    if (argc != 5) {
-        (void)std::fprintf(stderr, "usage: grrl-record OBJECT TRIALS SEED RECORDING\n");
+    const std::string policy = argc == 6 ? argv[4] : "";
+    if (policy != "learn" && policy != "paper") {
+        (void)std::fprintf(stderr, "usage: grrl-record OBJECT TRIALS SEED learn|paper RECORDING\n");
         return 2;
     }
     Result<ObjectSpec> object = object_from_text(argv[1]);
@@ -178,19 +173,19 @@ int main(int argc, char **argv)
     uint64_t seed = std::strtoull(argv[3], nullptr, 10);
     Run run;
     if (object)
-        run.file = std::fopen(argv[4], "wb");
+        run.file = std::fopen(argv[5], "wb");
     if (run.file == nullptr) {
-        std::string why = object ? std::string(argv[4]) + ": cannot be written" : object.error;
+        std::string why = object ? std::string(argv[5]) + ": cannot be written" : object.error;
         (void)std::fprintf(stderr, "grrl-record: %s\n", why.c_str());
         return 1;
     }
-    open(run, seed);
+    open(run, seed, policy == "learn" ? GRRL_POLICY_LEARN : GRRL_POLICY_PAPER);
     (void)std::printf("pushes");
     for (int i = 1; i <= trials && !run.failed; i++)
         (void)std::printf(" %d", trial(run, *object.value, seed, static_cast<uint32_t>(i)));
     (void)std::printf("\n");
     if (!send(run, ONBOARD_CLOSE) || std::fclose(run.file) != 0 || run.failed) {
-        (void)std::fprintf(stderr, "grrl-record: %s is not complete\n", argv[4]);
+        (void)std::fprintf(stderr, "grrl-record: %s is not complete\n", argv[5]);
         return 1;
     }
     return 0;

@@ -1,6 +1,6 @@
 /*
- * machine.h: what the image needs of its machine: a way out, a file to read, a text to write and a
- * count of instructions. All but the count goes through semihosting to whoever runs the image.
+ * machine.h: what the image needs of its machine: a serial line and a count of instructions, and,
+ * through semihosting from whoever runs the image, a way out, a file to read and a text to write.
  */
 #ifndef ONBOARD_MACHINE_H
 #define ONBOARD_MACHINE_H
@@ -23,6 +23,10 @@ intptr_t machine_open(const char *path);
 size_t machine_read(intptr_t file, void *bytes, size_t size);
 
 void machine_write(const char *text);
+
+/* The next byte from the serial line, which is waited for; and one to it. */
+uint8_t machine_serial_get(void);
+void machine_serial_put(uint8_t byte);
 
 /* Instructions so far in some unit, and how many of them are that many units. */
 uint32_t machine_count(void);

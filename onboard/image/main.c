@@ -1,14 +1,20 @@
 /*
- * The image: replays a recording and tells its hashes and what it cost, a name and numbers a line.
- * Arguments: the recording's path, or "fault" and the name of a fault to provoke.
+ * The image. Its arguments:
+ *
+ *   replay FILE   runs a recording and tells its hashes and what it cost, a name and numbers a line
+ *   serve         is the controller behind the serial line; tells after each run what it took
+ *   worst         tells what decisions cost at full capacity
+ *   fault NAME    provokes a fault
  */
 #include <string.h>
 
 #include "machine.h"
 #include "replay.h"
+#include "server.h"
+#include "worst.h"
 
 static struct onboard_controller controller;
-static struct onboard_packet packet;
+static struct onboard_server server;
 static char arguments[512];
 static struct {
     intptr_t file;
@@ -90,7 +96,7 @@ static void write_memory(void)
     write_line("ram experiences", sizeof controller.experiences);
     write_line("ram terms",
                sizeof controller.terms + sizeof controller.nodes + sizeof controller.text);
-    write_line("ram packets", sizeof controller.points + sizeof controller.answer + sizeof packet);
+    write_line("ram packets", sizeof controller.points + sizeof controller.answer + sizeof server);
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
@@ -111,7 +117,7 @@ static int replay(const char *path)
     const struct onboard_source source = {NULL, read_input};
     struct onboard_progress progress;
     onboard_controller_init(&controller, machine_count);
-    enum grrl_status status = onboard_replay(&controller, &source, &packet, &progress);
+    enum grrl_status status = onboard_replay(&controller, &source, &server.request, &progress);
     write_line("packets", progress.packets);
     write_line("trials", progress.trials);
     write_line("pushes", progress.pushes);
@@ -129,19 +135,47 @@ static int replay(const char *path)
     return status == GRRL_OK ? EXIT_FINE : EXIT_DIFFERS;
 }
 
+/* Until the machine is switched off. */
+static _Noreturn void serve(void)
+{
+    onboard_controller_init(&controller, NULL);
+    onboard_server_init(&server, &controller);
+    for (;;) {
+        size_t n = onboard_server_take(&server, machine_serial_get());
+        for (size_t i = 0; i < n; i++) {
+            machine_serial_put(server.line[i]);
+        }
+        if (n > 0 && controller.answer.type == ONBOARD_STORE) {
+            write_line("damaged", server.damaged);
+            write_line("repeated", server.repeated);
+            write_memory();
+        }
+    }
+}
+
 int main(void);
 
 int main(void)
 {
     (void)machine_arguments(arguments, sizeof arguments);
     const char *first = strchr(arguments, ' ');
-    if (first == NULL) {
-        return EXIT_USAGE;
+    first = first != NULL ? first + 1 : "";
+    if (strcmp(first, "serve") == 0) {
+        serve();
     }
-    first++;
     if (strncmp(first, "fault ", 6) == 0) {
         machine_provoke(first + 6);
         return EXIT_FINE;
     }
-    return replay(first);
+    if (strncmp(first, "replay ", 7) == 0) {
+        return replay(first + 7);
+    }
+    if (strcmp(first, "worst") == 0) {
+        write_line("worst learn", machine_instructions(worst_of_cases(&controller, machine_count)));
+        write_line("worst paper",
+                   machine_instructions(worst_of_experiences(&controller, machine_count)));
+        return EXIT_FINE;
+    }
+    machine_write("arguments: replay FILE, serve, worst, or fault NAME\n");
+    return EXIT_USAGE;
 }

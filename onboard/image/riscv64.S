@@ -1,4 +1,4 @@
-/* Start-up, faults, semihosting and the counter of a 64-bit RISC-V in machine mode. */
+/* Start-up, faults, semihosting, counter and serial line of a 64-bit RISC-V in machine mode. */
     .section .start, "ax"
     .globl reset
 reset:
@@ -62,4 +62,22 @@ machine_count: /* QEMU's minstret is its clock in ns: 64 an instruction with -ic
 
     .globl machine_instructions
 machine_instructions:
+    ret
+
+    .globl machine_serial_get
+machine_serial_get: /* a 16550: byte 5 is its state, bit 0 a byte received, bit 5 room for one */
+    li t0, 0x10000000
+1:  lbu t1, 5(t0)
+    andi t1, t1, 0x01
+    beqz t1, 1b
+    lbu a0, 0(t0)
+    ret
+
+    .globl machine_serial_put
+machine_serial_put:
+    li t0, 0x10000000
+2:  lbu t1, 5(t0)
+    andi t1, t1, 0x20
+    beqz t1, 2b
+    sb a0, 0(t0)
     ret
