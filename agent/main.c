@@ -17,6 +17,8 @@
 /* How long one lcm_handle_timeout waits; the tick needs 100 ms. */
 enum { POLL_MS = 50 };
 
+enum { HINT_PERIOD_US = 5000000 };
+
 static volatile sig_atomic_t stop;
 
 static struct grrl_agent agent; /* large, and there is one */
@@ -34,12 +36,22 @@ static void on_signal(int number)
     stop = 1;
 }
 
-static int64_t now_us(void *context)
+static int64_t read_clock_us(clockid_t clock)
 {
     struct timespec now;
-    (void)context;
-    (void)clock_gettime(CLOCK_REALTIME, &now);
+    (void)clock_gettime(clock, &now);
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+/* The time of day at the start, and what has passed since: a clock that is set meanwhile must not
+ * change what is due. */
+static int64_t now_us(void *context)
+{
+    static int64_t offset_us;
+    (void)context;
+    if (offset_us == 0)
+        offset_us = read_clock_us(CLOCK_REALTIME) - read_clock_us(CLOCK_MONOTONIC);
+    return read_clock_us(CLOCK_MONOTONIC) + offset_us;
 }
 
 static int64_t random_session(void)
@@ -141,9 +153,37 @@ static void catch_signals(void)
     (void)sigaction(SIGTERM, &action, NULL);
 }
 
+/* Whether to go on: not without end when the simulator or tracker is gone, nor beside an agent that
+ * moves the same robot. */
+static bool attended(const struct run *run, int64_t *hinted_us)
+{
+    int64_t silence_us = grrl_agent_silence_us(&agent);
+    double timeout_s = run->options.tracker_timeout_s;
+    if (grrl_agent_gave_way(&agent)) {
+        (void)fprintf(stderr, "grrl-agent: the robot moves for another agent: stop one of the two, "
+                              "then start this one again\n");
+        return false;
+    }
+    if (timeout_s > 0.0 && (double)silence_us >= timeout_s * 1e6) {
+        (void)fprintf(stderr, "grrl-agent: no simulator or tracker for %g s, giving up\n",
+                      timeout_s);
+        return false;
+    }
+    if (silence_us < HINT_PERIOD_US)
+        *hinted_us = 0;
+    if (silence_us - *hinted_us >= HINT_PERIOD_US) {
+        *hinted_us = silence_us;
+        if (!run->options.quiet)
+            (void)fprintf(stderr, "grrl-agent: waiting for points on the same LCM provider: start "
+                                  "grrl-sim or your tracker\n");
+    }
+    return true;
+}
+
 /* Until the trials are over, the log ends, a signal comes or LCM fails. */
 static void loop(struct run *run, lcm_t *lcm)
 {
+    int64_t hinted_us = 0;
     const char *url = run->options.lcm_url;
     const char *used = url != NULL ? url : getenv("LCM_DEFAULT_URL");
     bool is_log = used != NULL && strncmp(used, "file://", 7) == 0;
@@ -156,6 +196,8 @@ static void loop(struct run *run, lcm_t *lcm)
             break;
         }
         grrl_agent_tick(&agent);
+        if (!is_log && !attended(run, &hinted_us))
+            run->failed = true;
     }
 }
 

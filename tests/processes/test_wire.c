@@ -229,7 +229,7 @@ static void forged_counts_are_refused(void **state)
                                0x40000000, 0x7fffffff, 0x80000000, 0xffffffff, 2};
     const struct {
         int subject, at;
-    } counts[] = {{0, 42}, {1, 32}, {1, 36}, {1, 40}};
+    } counts[] = {{0, 50}, {1, 32}, {1, 36}, {1, 40}};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++)
         for (size_t v = 0; v < sizeof forged / sizeof forged[0]; v++) {
             struct subject s = subjects[counts[c].subject];
@@ -270,7 +270,7 @@ static void each_float_of_points_and_commands_must_be_finite(void **state)
     (void)state;
     const struct {
         int subject, first, n;
-    } runs[] = {{0, 46 + 12, 6},
+    } runs[] = {{0, 54 + 12, 6},
                 {2, 8 + 8 * 4 + 4 * 3 + 1, 8},
                 {3, 8 + 24 + 8 + 2, 2},
                 {5, 8 + 16 + 8 + 4 + 2 + 2 + 4, 6},
