@@ -70,11 +70,11 @@ static int64_t random_session(void)
 
 static void save(struct run *run)
 {
-    struct grrl_store_error error;
+    struct grrl_store_report report;
     if (run->options.store == NULL ||
-        grrl_store_file_save(run->options.store, &agent.learner, &error))
+        grrl_store_file_save(&grrl_file_calls_posix, run->options.store, &agent.learner, &report))
         return;
-    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", error.text);
+    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", report.text);
     run->failed = true;
 }
 
@@ -203,7 +203,7 @@ static void loop(struct run *run, lcm_t *lcm)
 
 static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
 {
-    struct grrl_store_error error;
+    struct grrl_store_report report;
     enum grrl_status status = grrl_agent_init(&agent, config, lcm);
     if (status != GRRL_OK) {
         (void)fprintf(stderr, "grrl-agent: %s\n", grrl_status_text(status));
@@ -211,10 +211,12 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
     }
     if (run->options.store == NULL)
         return true;
-    if (!grrl_store_file_load(run->options.store, &agent.learner, &error)) {
-        (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
+    enum grrl_store_result result =
+        grrl_store_file_load(&grrl_file_calls_posix, run->options.store, &agent.learner, &report);
+    if (result != GRRL_STORE_LOADED) /* --quiet does not silence what was lost */
+        (void)fprintf(stderr, "grrl-agent: %s\n", report.text);
+    if (result == GRRL_STORE_REFUSED)
         return false;
-    }
     save(run); /* the same again: where it cannot be written, that shows before anything is learned
                 */
     return !run->failed;

@@ -1,7 +1,7 @@
 /*
  * Experience files. The first byte tells whether the CRCs are made right first, so that what stands
- * behind them is reached, too. What is loaded saves to the bytes it came from, and a learner with
- * it perceives, chooses and learns.
+ * behind them is reached, too. What is loaded saves to the bytes it came from, what is kept of a
+ * torn file loads again, and a learner with it perceives, chooses and learns.
  */
 #include <string.h>
 
@@ -152,6 +152,25 @@ static void init(enum grrl_policy_kind kind)
     REQUIRE(grrl_learner_init(&learner, &config, &memory) == GRRL_OK);
 }
 
+static void save(void)
+{
+    struct grrl_experience_io out = {.context = &saved, .write = write_bytes};
+    saved.size = 0;
+    REQUIRE(grrl_learner_save(&learner, &out) == GRRL_OK);
+}
+
+/* What was whole of a torn file is a file of its own. */
+static void load_what_was_kept(void)
+{
+    struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+    memcpy(file.bytes, saved.bytes, saved.size);
+    file.size = saved.size;
+    file.at = 0;
+    REQUIRE(grrl_learner_load(&learner, &io) == GRRL_OK);
+    save();
+    REQUIRE(saved.size == file.size && memcmp(saved.bytes, file.bytes, saved.size) == 0);
+}
+
 enum { SIGN = 1, BY_PAPER = 2 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -164,16 +183,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if ((data[0] & SIGN) != 0)
         sign_file();
     struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+    uint32_t lost;
     init((data[0] & BY_PAPER) != 0 ? GRRL_POLICY_PAPER : GRRL_POLICY_LEARN);
-    if (grrl_learner_load(&learner, &io) != GRRL_OK) {
+    enum grrl_status status = grrl_learner_load_torn(&learner, &io, &lost);
+    if (status != GRRL_OK && status != GRRL_ERR_IO) {
         REQUIRE(learner.store.n_states == 0 && learner.store.n_experiences == 0);
         REQUIRE(learner.cases.n == 0);
         return 0;
     }
-    struct grrl_experience_io out = {.context = &saved, .write = write_bytes};
-    saved.size = 0;
-    REQUIRE(grrl_learner_save(&learner, &out) == GRRL_OK);
-    REQUIRE(saved.size == file.at && memcmp(saved.bytes, file.bytes, saved.size) == 0);
+    save();
+    if (status == GRRL_OK)
+        REQUIRE(saved.size == file.at && memcmp(saved.bytes, file.bytes, saved.size) == 0);
+    else
+        load_what_was_kept();
     use();
     return 0;
 }
