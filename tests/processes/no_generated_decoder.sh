@@ -11,19 +11,23 @@ undefined() {
     nm -u "$@" | awk '$1 == "U" { print $2 }' | sort -u
 }
 
-generated=$1 caller=${2//;/ }
+generated=$1
+caller=$2
 shift 2
+IFS=';' read -r -a objects <<<"$(
+    IFS=';'
+    printf '%s' "$*"
+)"
 defined=$(nm "$generated" | awk '$2 == "T" { print $3 }' | grep -cE "$unchecked") || defined=0
 [ "$defined" -ge 14 ] || {
     echo "FAILED: $generated has $defined decoders: are they called otherwise now?"
     exit 1
 }
-# shellcheck disable=SC2086
-undefined $caller | grep -qE "$unchecked" || {
+undefined "$caller" | grep -qE "$unchecked" || {
     echo "FAILED: $caller refers to no decoder: this test sees nothing"
     exit 1
 }
-if undefined ${*//;/ } | grep -E "$unchecked"; then
+if undefined "${objects[@]}" | grep -E "$unchecked"; then
     echo "FAILED: decoders that trust the wire are called"
     exit 1
 fi
