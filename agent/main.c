@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "agent.h"
+#include "log_check.h"
 #include "options.h"
 #include "store_file.h"
 
@@ -131,8 +132,27 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     (void)fflush(stdout);
 }
 
+/* The URL that LCM will use; NULL: its own default. */
+static const char *used_url(const char *url)
+{
+    return url != NULL ? url : getenv("LCM_DEFAULT_URL");
+}
+
+static bool is_log(const char *url)
+{
+    char path[1];
+    return url != NULL && grrl_log_path(url, sizeof path, path);
+}
+
 static lcm_t *open_lcm(const char *url)
 {
+    char path[4096];
+    struct grrl_log_why why;
+    const char *used = used_url(url);
+    if (used != NULL && grrl_log_path(used, sizeof path, path) && !grrl_log_check(path, &why)) {
+        (void)fprintf(stderr, "grrl-agent: %s\n", why.text);
+        return NULL;
+    }
     lcm_t *lcm = lcm_create(url);
     if (lcm != NULL && lcm_get_fileno(lcm) >= 0)
         return lcm;
@@ -184,19 +204,17 @@ static bool attended(const struct run *run, int64_t *hinted_us)
 static void loop(struct run *run, lcm_t *lcm)
 {
     int64_t hinted_us = 0;
-    const char *url = run->options.lcm_url;
-    const char *used = url != NULL ? url : getenv("LCM_DEFAULT_URL");
-    bool is_log = used != NULL && strncmp(used, "file://", 7) == 0;
+    bool from_log = is_log(used_url(run->options.lcm_url));
     while (!stop && !run->failed && !grrl_agent_finished(&agent)) {
         if (lcm_handle_timeout(lcm, POLL_MS) < 0 && !stop) {
-            if (!is_log) {
+            if (!from_log) {
                 (void)fprintf(stderr, "grrl-agent: LCM fails to receive\n");
                 run->failed = true;
             }
             break;
         }
         grrl_agent_tick(&agent);
-        if (!is_log && !attended(run, &hinted_us))
+        if (!from_log && !attended(run, &hinted_us))
             run->failed = true;
     }
 }

@@ -1,6 +1,6 @@
 /*
- * LCM logs: read as tracks, and learned from by an observer. The log goes through LCM's own reader;
- * every message then goes through wire.c.
+ * LCM logs: read as tracks, and learned from by an observer. The log goes through log_check.c and
+ * LCM's own reader, every message then through wire.c.
  */
 #define _GNU_SOURCE /* memfd_create */
 
@@ -10,6 +10,7 @@
 
 #include "agent.h"
 #include "fuzz.h"
+#include "log_check.h"
 #include "tracks.h"
 
 enum { CAPACITY = 16, PATH_BYTES = 64 };
@@ -77,8 +78,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int fd = memfd_create("log", MFD_CLOEXEC);
     REQUIRE(fd >= 0 && write(fd, data, size) == (ssize_t)size);
     (void)snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    struct grrl_log_why why;
     read_tracks(path);
-    observe(path);
+    if (grrl_log_check(path, &why))
+        observe(path);
     (void)close(fd);
     return 0;
 }
