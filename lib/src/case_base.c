@@ -72,9 +72,7 @@ static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_
 {
     uint8_t n = 0;
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
-        if ((parts >> i & 1u) != 0 && a->part[i] != b->part[i]) {
-            ++n;
-        }
+        n = (uint8_t)(n + (((unsigned)parts >> i & 1u) != 0 && a->part[i] != b->part[i]));
     }
     return n;
 }
