@@ -59,8 +59,9 @@ static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t ut
     if (agent->plant_session_id != 0 && session_id != agent->plant_session_id) {
         if (now - agent->plant_heard_us < SILENCE_US) {
             if (agent->counts.foreign++ == 0)
-                agent_note(agent, "another simulator or tracker sends here, too, and is ignored: "
-                                  "give each an LCM provider (port) of its own");
+                agent_note(agent, "another simulator or tracker sends here, too, and is ignored "
+                                  "while the known one is there: give each an LCM provider (port) "
+                                  "of its own");
             return false;
         }
         agent_note(agent, "the simulator or tracker was restarted, the trial is abandoned");
