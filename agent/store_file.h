@@ -48,8 +48,8 @@ GRRL_MUST_USE enum grrl_store_result grrl_store_file_load(const struct grrl_file
                                                           struct grrl_learner *learner,
                                                           struct grrl_store_report *report);
 
-/* After a failure the file holds what it held before; or what was to be saved, when all but the last
- * sync, of the folder, went well. */
+/* After a failure the file holds what it held before; or what was to be saved, when all but the
+ * last sync, of the folder, went well. */
 GRRL_MUST_USE bool grrl_store_file_save(const struct grrl_file_calls *calls, const char *path,
                                         const struct grrl_learner *learner,
                                         struct grrl_store_report *report);
