@@ -15,21 +15,26 @@ start agent "$AGENT" --lcm-url "$URL" --store state.0 --tracker-timeout 0.3
 wait "$LAST"
 [ -s state.0 ] || fail "an agent that starts saves nothing"
 
-# kill_both SECONDS: starts both, kills both in the middle of things
+# kill_both TRIALS SECONDS: starts both, kills both so long after so many trials
 kill_both() {
     start agent "$AGENT" --lcm-url "$URL" --seed 3 --store killed.store
     local agent=$LAST
-    start sim "$SIM" --lcm-url "$URL" --object RPRPR --trials "$TRIALS" --seed 3
+    start sim "$SIM" --lcm-url "$URL" --object RPRPR --trials "$TRIALS" --seed 3 \
+        --results killed.csv
     local sim=$LAST
-    sleep "$1"
+    for _ in $(seq 2000); do
+        [ "$(grep -c '^[0-9]' killed.csv 2>/dev/null)" -ge "$1" ] 2>/dev/null && break
+        sleep 0.005
+    done
+    sleep "$2"
     kill -9 "$agent" "$sim" 2>/dev/null # or they are through
     wait "$agent" "$sim" 2>/dev/null
 }
 
 seen=
 for round in $(seq "$ROUNDS"); do
-    rm -f killed.store killed.store.new
-    kill_both "0.$((RANDOM % 10))$((RANDOM % 10))"
+    rm -f killed.store killed.store.new killed.csv
+    kill_both $((RANDOM % TRIALS)) "0.0$((RANDOM % 10))"
     [ -e killed.store ] || continue # killed before the first save
     found=
     for k in $(seq 0 "$TRIALS"); do
