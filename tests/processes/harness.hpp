@@ -345,9 +345,10 @@ private:
         if (setup_.forged_messages) {
             Message forged =
                 seen_[grrl_random_below(&random_, static_cast<uint32_t>(seen_.size()))];
-            if (grrl_random_below(&random_, 2) == 0)
-                forged.data[16 + 3] ^= 0x5a; /* another session */
-            else
+            size_t session_at = 16 + 3; /* one cut before is among those seen, too */
+            if (grrl_random_below(&random_, 2) == 0 && forged.data.size() > session_at)
+                forged.data[session_at] ^= 0x5a;
+            else if (!forged.data.empty())
                 forged.data.resize(
                     grrl_random_below(&random_, static_cast<uint32_t>(forged.data.size())));
             send(forged);
