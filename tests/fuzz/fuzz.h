@@ -3,7 +3,7 @@
  * LLVMFuzzerTestOneInput: whatever the bytes, it returns, and what it requires holds.
  *
  * The same file is built twice: with libFuzzer (preset fuzz, run by tools/fuzz), and with replay.c,
- * which runs the kept corpus through it as a test in every preset.
+ * which runs the kept corpus through it as a test in the other presets.
  */
 #ifndef GRRL_FUZZ_H
 #define GRRL_FUZZ_H
