@@ -52,6 +52,11 @@ extern const struct bench_peer bench_igraph;
 extern const struct bench_peer bench_nauty;
 #endif
 
+#ifdef GRRL_BENCH_NETWORKX
+/* Nanoseconds of a query and of building both graphs, as Python counts them; false: it failed. */
+bool bench_networkx(const struct bench_pair *pairs, unsigned n, double *match_ns, double *build_ns);
+#endif
+
 /* Nanoseconds this thread has had a processor: others on the machine do not count. */
 double bench_now_ns(void);
 
@@ -74,8 +79,13 @@ void bench_near_miss(uint8_t legs, struct bench_pair *pair);
 /* The same, the target with one more leg: no part of it. */
 void bench_near_part(uint8_t legs, struct bench_pair *pair);
 
+/* Nanoseconds to make one graph of so many links and to give it up again; NULL: the library, out of
+ * a term. */
+double bench_build(const struct bench_peer *peer, uint8_t links);
+
 int bench_match(bool json, unsigned n_pairs);
 int bench_retrieve(bool json);
+int bench_evict(bool json);
 
 #ifdef __cplusplus
 }

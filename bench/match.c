@@ -260,6 +260,18 @@ static void print_rows(const struct bench_peer **peers, unsigned n_peers, const 
     }
 }
 
+#ifdef GRRL_BENCH_NETWORKX
+static const struct bench_peer networkx = {"networkx", NULL, NULL, NULL};
+
+static bool measure_networkx(const struct bench_pair *pairs, unsigned n, struct times *times)
+{
+    if (!bench_networkx(pairs, n, &times->mean, &times->build))
+        return false;
+    times->median = times->p99 = times->worst = times->mean; /* it tells no more */
+    return true;
+}
+#endif
+
 static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
                          enum bench_question question)
 {
@@ -267,6 +279,9 @@ static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
     const struct bench_peer *peers[MOST_PEERS];
     struct row rows[MOST_PEERS] = {{0}};
     unsigned n_peers = list_peers(peers);
+#ifdef GRRL_BENCH_NETWORKX
+    peers[n_peers++] = &networkx;
+#endif
     for (int shape = 0; shape < BENCH_SHAPES; shape++) {
         struct grrl_random random;
         grrl_random_init(&random, 20080625u,
@@ -275,7 +290,14 @@ static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
             bench_pair(&random, (enum bench_shape)shape, question, n, &pairs[i]);
         for (unsigned p = 0; p < n_peers; p++) {
             struct times times = {0, 0, 0, 0, 0};
-            if (!measure(peers[p], pairs, n_pairs, &times))
+            bool measured;
+#ifdef GRRL_BENCH_NETWORKX
+            if (peers[p] == &networkx)
+                measured = measure_networkx(pairs, n_pairs, &times);
+            else
+#endif
+                measured = measure(peers[p], pairs, n_pairs, &times);
+            if (!measured)
                 continue;
             char what[40];
             (void)snprintf(what, sizeof what, "%s, %s", shape_names[shape],
@@ -338,6 +360,24 @@ static void run_symmetric(bool json, bool *first)
     }
 }
 
+/* The library first, out of a term. */
+static void run_building(bool json, bool *first, uint8_t n)
+{
+    const struct bench_peer *peers[MOST_PEERS];
+    unsigned n_peers = list_peers(peers);
+    double own = bench_build(NULL, n);
+    for (unsigned p = 1; p < n_peers; p++) {
+        bool library = p == 1; /* its plans are not what is asked for */
+        double spent = library ? own : bench_build(peers[p], n);
+        struct times times = {spent, spent, spent, spent, 2 * spent};
+        if (json)
+            add_case(json, first, peers[library ? 0 : p]->name, "building one", n, &times);
+        else
+            (void)printf("| %2u | %-12s | %8.1f | %5.1f |\n", (unsigned)n,
+                         library ? "grrl" : peers[p]->name, spent, spent / own);
+    }
+}
+
 int bench_match(bool json, unsigned n_pairs)
 {
     bool first = true;
@@ -354,6 +394,10 @@ int bench_match(bool json, unsigned n_pairs)
     if (!json)
         (void)printf("\n");
     run_symmetric(json, &first);
+    if (!json)
+        (void)printf("\n| links | building one | ns | grrl is faster |\n|---|---|---|---|\n");
+    for (int s = 0; s < N_SIZES; s++)
+        run_building(json, &first, sizes[s]);
     if (json)
         (void)printf("\n]\n");
     return 0;

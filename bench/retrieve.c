@@ -5,7 +5,9 @@
 #include "bench.h"
 #include "grrl/experience.h"
 
-enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4 };
+enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4, FEW_STATES = 32 };
+
+static_assert(FEW_STATES == 32 && GRRL_RECALL_STATES == 512, "what the table calls them");
 
 enum query {
     QUERY_STORED, /* a stored state, its links in another order */
@@ -20,6 +22,7 @@ static const char *const query_names[QUERIES] = {"stored", "stored less a link",
 
 struct setup {
     struct grrl_experience_store store;
+    struct grrl_experience_index index;
     struct grrl_random random;
     bool json;
     bool first;
@@ -46,8 +49,8 @@ static void fill(struct setup *setup, uint32_t n, bool with_index)
     grrl_experience_init(&setup->store, allocate(n, sizeof(struct grrl_experience_state)), n,
                          allocate(6 * (size_t)n, sizeof(struct grrl_experience)), 6 * n);
     if (with_index)
-        grrl_experience_use_index(&setup->store,
-                                  allocate((size_t)n * GRRL_SIGNATURE_WORDS, sizeof(uint64_t)));
+        grrl_experience_use_index(&setup->store, &setup->index,
+                                  allocate(n, sizeof(struct grrl_experience_row)));
     while (setup->store.n_states < n) {
         struct grrl_graph graph;
         random_state(&setup->random, &graph);
@@ -64,7 +67,8 @@ static void empty(struct setup *setup)
 {
     free(setup->store.states);
     free(setup->store.experiences);
-    free(setup->store.index);
+    if (setup->store.index != NULL)
+        free(setup->index.rows);
 }
 
 static void make_query(struct setup *setup, enum query kind, struct grrl_graph *graph)
@@ -122,11 +126,11 @@ static void report(struct setup *setup, const char *level, enum query kind, doub
     setup->first = false;
 }
 
-static void run_queries(struct setup *setup, enum grrl_recall_level deepest, const char *level,
-                        enum query kind)
+static void run_queries(struct setup *setup, enum grrl_recall_level deepest, uint32_t states,
+                        const char *level, enum query kind)
 {
     static double spent[N_QUERIES];
-    const struct grrl_recall_config config = {deepest, GRRL_MATCH_BUDGET};
+    const struct grrl_recall_config config = {deepest, GRRL_MATCH_BUDGET, states};
     double known = 0;
     for (int i = 0; i < N_QUERIES; i++) {
         struct grrl_graph graph;
@@ -154,10 +158,14 @@ int bench_retrieve(bool json)
     for (int s = 0; s < 2; s++) {
         for (int with_index = 0; with_index < 2; with_index++) {
             fill(&setup, sizes[s], with_index == 1);
-            run_queries(&setup, GRRL_RECALL_EXACT, "exact", QUERY_STORED);
-            run_queries(&setup, GRRL_RECALL_RELAXED, "relaxed", QUERY_STORED);
-            for (int kind = 0; kind < QUERIES; kind++)
-                run_queries(&setup, GRRL_RECALL_SUBSTRUCTURE, "sub-structure", (enum query)kind);
+            run_queries(&setup, GRRL_RECALL_EXACT, 1, "exact", QUERY_STORED);
+            run_queries(&setup, GRRL_RECALL_RELAXED, 1, "relaxed", QUERY_STORED);
+            for (int kind = 0; kind < QUERIES; kind++) {
+                run_queries(&setup, GRRL_RECALL_SUBSTRUCTURE, FEW_STATES, "32 closest",
+                            (enum query)kind);
+                run_queries(&setup, GRRL_RECALL_SUBSTRUCTURE, GRRL_RECALL_STATES, "512 closest",
+                            (enum query)kind);
+            }
             empty(&setup);
         }
     }

@@ -27,7 +27,7 @@ const Entry entries[] = {
     {"PRRP", nullptr, nullptr},
     {"scissors", nullptr, "scissors.grrl"},
     {"wooden-toy", nullptr, "wooden-toy.grrl"},
-    {"star", "R(R(R(l1, l2), l3), l4)", nullptr},
+    {"star", "R(l1, l2, l3, l4)", nullptr}, /* three arms on l1 */
     {"loop-4R", "R(l1, R(l4, R(l3, R(l2, l1))))", nullptr},
     {"loop-5R", "R(l1, R(l5, R(l4, R(l3, R(l2, l1)))))", nullptr},
     {"slider-crank", "P(l1, R(l4, R(l3, R(l2, l1))))", nullptr},

@@ -62,8 +62,8 @@ std::string policy_names()
 {
     std::string names;
     for (const Policy &policy : policies())
-        names += (names.empty() ? "" : ", ") + std::string(policy.name);
-    return names;
+        names += (names.empty() ? "" : ", ") + policy.name;
+    return names + ", or an ablation (--help)";
 }
 
 bool parse_policies(const std::string &text, std::vector<const Policy *> &chosen)
@@ -101,7 +101,7 @@ bool parse_figure(const std::string &text, std::string &figure)
     figure = text;
     std::vector<std::string> names = figure_names();
     return std::find(names.begin(), names.end(), text) != names.end() ||
-           bad("figure", text, "3b, 4a, 4b, 4c or all");
+           bad("figure", text, "3b, 4a, 4b, 4c, all or ablations");
 }
 
 /* The one list of options: getopt's table and --help are both made from it. */
@@ -113,7 +113,7 @@ struct Row {
 };
 
 const Row table[] = {
-    {"figure", "NAME", "a figure of the paper: 3b, 4a, 4b, 4c or all",
+    {"figure", "NAME", "of the paper: 3b, 4a, 4b, 4c or all; or ablations",
      [](const char *t, Options &o) { return parse_figure(t, o.figure); }},
     {"object", "OBJECT", "or: chain (RPR), term (D(lb, R(l1, l2))) or file",
      [](const char *t, Options &o) { return o.object = t, true; }},
@@ -155,7 +155,10 @@ void print_help()
     }
     (void)std::printf("\nPolicies:\n");
     for (const Policy &policy : policies())
-        (void)std::printf("  %-12s %s\n", policy.name, policy.text);
+        (void)std::printf("  %-12s %s\n", policy.name.c_str(), policy.text.c_str());
+    (void)std::printf("\nAblations, by --figure ablations (RPRPRPR) or by name:\n");
+    for (const Policy &policy : ablations())
+        (void)std::printf("  %-25s %s\n", policy.name.c_str(), policy.text.c_str());
     (void)std::printf(
         "\nDIR gets trials.csv, summary.csv, report.html and pictures (SVG, PNG; needs gnuplot).\n"
         "A run that was stopped goes on where it was: finished experiments are kept there.\n"

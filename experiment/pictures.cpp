@@ -73,7 +73,59 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
     return command + "\n";
 }
 
-std::string script_of(const Plan &plan, const Figure &figure)
+/* A line for each curve: its name, and mean, low, high of the first five trials and the last ten.
+ */
+std::string rows_of(const Plan &plan, const Figure &figure, const std::vector<Experiments> &results)
+{
+    std::ostringstream text;
+    for (size_t c : figure.curves) {
+        int trials = plan.curves[c].trials;
+        text << curve_label(plan.curves[c], false);
+        for (Estimate of : {pushes(results[c], 1, std::min(5, trials)),
+                            pushes(results[c], std::max(1, trials - 9), trials)})
+            text << "\t" << of.mean << "\t" << of.low() << "\t" << of.high();
+        text << "\n";
+    }
+    return text.str();
+}
+
+std::string rows_script(const Figure &figure)
+{
+    std::string height = std::to_string(150 + 18 * figure.curves.size());
+    std::string data = quoted(figure.name + ".tsv");
+    auto series = [&data](const char *columns, const char *point, const char *color,
+                          const char *title) {
+        return data + " using " + columns + " with xerrorbars pt " + point + " ps 0.7 lc rgb '" +
+               color + "' title '" + title + "'";
+    };
+    return "# Means over experiments with 95% intervals.\n"
+           "set terminal svg size 900," +
+           height +
+           " font 'Helvetica,Arial,sans-serif,13' background '#ffffff'\n"
+           "set output " +
+           quoted(figure.name + ".svg") +
+           "\nset datafile separator '\\t'\n"
+           "set border 3 lc rgb '#555555'\n"
+           "set tics nomirror out tc rgb '#333333'\n"
+           "set ytics noenhanced\n"
+           "set grid x y lc rgb '#e6e6e6' lt 1\n"
+           "set title " +
+           quoted(figure.title) +
+           " noenhanced tc rgb '#222222'\n"
+           "set xlabel 'pushes until the structure is known' tc rgb '#222222'\n"
+           "set yrange [" +
+           std::to_string(figure.curves.size()) +
+           ":-1]\n"
+           "set xrange [0:*]\n"
+           "set key outside center top horizontal tc rgb '#222222'\n"
+           "plot " +
+           series("2:0:3:4:ytic(1)", "6", "#8c8c8c", "first five trials") + ", \\\n     " +
+           series("5:0:6:7", "7", "#1666a8", "last ten") + "\n" +
+           "set terminal pngcairo size 1200," + height + " font 'Helvetica,13'\nset output " +
+           quoted(figure.name + ".png") + "\nreplot\n";
+}
+
+std::string curves_script(const Plan &plan, const Figure &figure)
 {
     return "# Lines: means of up to five trials with 95% intervals; points: means of one trial.\n"
            "set terminal svg size 900,540 font 'Helvetica,Arial,sans-serif,15' "
@@ -120,8 +172,11 @@ bool run_gnuplot(const std::string &folder, const std::string &script)
 bool draw(const Folder &folder, const Plan &plan, const Figure &figure,
           const std::vector<Experiments> &results)
 {
-    write_file(folder.path(figure.name + ".tsv"), data_of(plan, figure, results));
-    write_file(folder.path(figure.name + ".gp"), script_of(plan, figure));
+    bool rows = figure.kind == Figure::Kind::ROWS;
+    write_file(folder.path(figure.name + ".tsv"),
+               rows ? rows_of(plan, figure, results) : data_of(plan, figure, results));
+    write_file(folder.path(figure.name + ".gp"),
+               rows ? rows_script(figure) : curves_script(plan, figure));
     return run_gnuplot(folder.path(""), figure.name + ".gp");
 }
 

@@ -9,6 +9,7 @@ namespace
 {
 
 constexpr int paper_pretrain_trials = 50;
+constexpr const char *ablations_object = "RPRPRPR";
 
 struct PaperFigure {
     const char *name;
@@ -84,6 +85,31 @@ void add_figure(Plan &plan, const Options &options, const PaperFigure &paper)
     plan.figures.push_back(figure);
 }
 
+/* Both learners whole, and with one thing taken away. */
+void add_ablations(Plan &plan, const Options &options)
+{
+    Figure figure;
+    figure.kind = Figure::Kind::ROWS;
+    figure.name = "ablations";
+    figure.title = std::string("Ablations: ") + ablations_object;
+    std::vector<const Policy *> chosen = options.policies;
+    if (chosen.empty())
+        for (const char *base : {"paper", "learn"}) {
+            chosen.push_back(find_policy(base));
+            for (const Policy &policy : ablations())
+                if (policy.name.compare(0, std::string(base).size(), base) == 0)
+                    chosen.push_back(&policy);
+        }
+    for (const Policy *policy : chosen) {
+        Curve curve;
+        curve.object = ablations_object;
+        curve.trials = options.trials;
+        curve.policy = policy;
+        add_curves(plan, figure, curve);
+    }
+    plan.figures.push_back(figure);
+}
+
 void add_own(Plan &plan, const Options &options)
 {
     Figure figure;
@@ -120,6 +146,7 @@ std::vector<std::string> figure_names()
     for (const PaperFigure &figure : paper_figures())
         names.push_back(figure.name);
     names.push_back("all");
+    names.push_back("ablations");
     return names;
 }
 
@@ -128,6 +155,8 @@ grrl_sim::Result<Plan> make_plan(const Options &options)
     Plan plan;
     if (options.figure.empty())
         add_own(plan, options);
+    if (options.figure == "ablations")
+        add_ablations(plan, options);
     for (const PaperFigure &figure : paper_figures())
         if (options.figure == figure.name || options.figure == "all")
             add_figure(plan, options, figure);

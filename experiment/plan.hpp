@@ -28,6 +28,8 @@ struct Curve {
 };
 
 struct Figure {
+    enum class Kind { CURVES, ROWS }; /* pushes by trial, or a row of means for each curve */
+    Kind kind = Kind::CURVES;
     std::string name; /* figure-3b, or curves */
     std::string title;
     std::vector<size_t> curves; /* of the plan */
@@ -38,7 +40,7 @@ struct Plan {
     std::vector<Figure> figures;
 };
 
-/* 3b, 4a, .. and all. */
+/* 3b, 4a, .., all (of the paper), and ablations. */
 std::vector<std::string> figure_names();
 
 /* An error says which object is wrong and why. */

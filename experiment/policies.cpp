@@ -66,9 +66,10 @@ const std::vector<Policy> &policies()
 
 const Policy *find_policy(const std::string &name)
 {
-    for (const Policy &policy : policies())
-        if (policy.name == name)
-            return &policy;
+    for (const auto *table : {&policies(), &ablations()})
+        for (const Policy &policy : *table)
+            if (policy.name == name)
+                return &policy;
     return nullptr;
 }
 

@@ -68,6 +68,14 @@ std::string table_of(const Plan &plan, const Figure &figure,
     return html.str();
 }
 
+bool is_used(const Plan &plan, const Policy &policy)
+{
+    for (const Curve &curve : plan.curves)
+        if (curve.policy == &policy)
+            return true;
+    return false;
+}
+
 const char *const head = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>grrl experiments</title><style>
 body { font: 16px/1.5 sans-serif; color: #222; max-width: 960px; margin: 2em auto; padding: 0 1em }
@@ -96,14 +104,19 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
         if (picture)
             html << "<img alt=\"" << escaped(figure.title) << "\" src=\"data:image/svg+xml;base64,"
                  << base64(*picture) << "\">\n"
-                 << "<p>Lines: means of up to five trials with their intervals; points: means of "
-                    "one trial. In a transfer, dashed is without experience.</p>\n";
+                 << (figure.kind == Figure::Kind::CURVES
+                         ? "<p>Lines: means of up to five trials with their intervals; points: "
+                           "means of one trial. In a transfer, dashed is without experience.</p>\n"
+                         : "<p>Means with their intervals over the first five trials (hollow) and "
+                           "the last ten (filled).</p>\n");
         html << table_of(plan, figure, results);
     }
     html << "<h2>Policies</h2>\n<table>\n";
-    for (const Policy &policy : policies())
-        html << "<tr><td>" << policy.name << "</td><td style=\"text-align:left\">"
-             << escaped(policy.text) << "</td></tr>\n";
+    for (const auto *policies_of : {&policies(), &ablations()})
+        for (const Policy &policy : *policies_of)
+            if (is_used(plan, policy))
+                html << "<tr><td>" << policy.name << "</td><td style=\"text-align:left\">"
+                     << escaped(policy.text) << "</td></tr>\n";
     html << "</table>\n</body></html>\n";
     return html.str();
 }

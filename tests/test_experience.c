@@ -18,7 +18,8 @@ enum { STATES = 40, EXPERIENCES = 120 };
 static struct grrl_experience_state states[STATES];
 static struct grrl_experience experiences[EXPERIENCES];
 
-static const struct grrl_recall_config everything = {GRRL_RECALL_SUBSTRUCTURE, GRRL_MATCH_BUDGET};
+static const struct grrl_recall_config everything = {GRRL_RECALL_SUBSTRUCTURE, GRRL_MATCH_BUDGET,
+                                                     GRRL_RECALL_STATES};
 
 static void init(struct grrl_experience_store *store, uint32_t n_states, uint32_t n_experiences)
 {
@@ -410,7 +411,7 @@ static void the_state_used_longest_ago_makes_room(void **state)
     assert_int_equal(store.n_states, 2);
     assert_int_equal(store.n_experiences, 3);
     assert_int_equal(store.evictions, 2);
-    struct grrl_recall_config exact = {GRRL_RECALL_EXACT, 100};
+    struct grrl_recall_config exact = {GRRL_RECALL_EXACT, 100, 1};
     struct grrl_recall recall;
     grrl_experience_recall(&store, &b, &exact, &recall);
     assert_int_equal(recall.entry[0][1].experience, GRRL_NO_EXPERIENCE);
@@ -452,23 +453,28 @@ static void an_index_changes_nothing_that_is_recalled(void **state)
     print_message("seed %llu\n", (unsigned long long)SEED);
     static struct grrl_experience_state more_states[2][STATES];
     static struct grrl_experience more_experiences[2][EXPERIENCES];
-    static uint64_t index[2][STATES * GRRL_SIGNATURE_WORDS];
+    static struct grrl_experience_index index[2];
+    static struct grrl_experience_row rows[2][STATES];
     struct grrl_experience_store plain;
     struct grrl_experience_store indexed[2];
     init(&plain, STATES, EXPERIENCES);
     for (int k = 0; k < 2; ++k) {
         grrl_experience_init(&indexed[k], more_states[k], STATES, more_experiences[k], EXPERIENCES);
     }
-    grrl_experience_use_index(&indexed[0], index[0]);
+    grrl_experience_use_index(&indexed[0], &index[0], rows[0]);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 4);
     for (int i = 0; i < 1000; ++i) {
         struct grrl_graph graph = random_graph(&random);
+        struct grrl_recall_config config = everything;
+        if (i % 4 != 0) { /* so few that some of a distance are left out */
+            config.states = 1 + grrl_random_below(&random, 12);
+        }
         struct grrl_recall expected;
-        grrl_experience_recall(&plain, &graph, &everything, &expected);
+        grrl_experience_recall(&plain, &graph, &config, &expected);
         for (int k = 0; k < 2; ++k) {
             struct grrl_recall recall;
-            grrl_experience_recall(&indexed[k], &graph, &everything, &recall);
+            grrl_experience_recall(&indexed[k], &graph, &config, &recall);
             assert_memory_equal(recall.entry, expected.entry, sizeof recall.entry);
         }
         uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
@@ -478,7 +484,7 @@ static void an_index_changes_nothing_that_is_recalled(void **state)
             assert_int_equal(teach(&indexed[k], &graph, link, direction, 1.0f), entry);
         }
         if (i == 600) {
-            grrl_experience_use_index(&indexed[1], index[1]);
+            grrl_experience_use_index(&indexed[1], &index[1], rows[1]);
         }
     }
     assert_true(plain.evictions > 100);

@@ -227,6 +227,11 @@ static void test_a_part_stays_a_part(void **state)
             grrl_signature(&part, GRRL_ALL_PROPERTIES, &small);
             grrl_signature(&target, GRRL_ALL_PROPERTIES, &large);
             assert_true(grrl_signature_within(&small, &large, false));
+            struct grrl_paths few;
+            struct grrl_paths many;
+            grrl_paths(&part, &few);
+            grrl_paths(&target, &many);
+            assert_true(grrl_paths_within(&few, &many));
             assert_true(grrl_signature_within(&small, &large, true));
             assert_int_equal(grrl_match_find(GRRL_MATCH_MONOMORPHISM, &part, &target,
                                              GRRL_ALL_PROPERTIES, BIG_BUDGET, map),

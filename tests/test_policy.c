@@ -224,6 +224,10 @@ static void a_parameter_out_of_range_is_named(void **state)
     check_refused("recall.deepest");
     c->recall.budget = 0;
     check_refused("recall.budget");
+    c->recall.states = 0;
+    check_refused("recall.states");
+    c->recall.states = GRRL_RECALL_STATES + 1;
+    check_refused("recall.states");
 }
 
 int main(void)

@@ -40,4 +40,14 @@ static inline unsigned grrl_bit_count(uint32_t set)
     return (set * UINT32_C(0x01010101)) >> 24;
 }
 
+/* Asks for memory that is wanted soon. */
+static inline void grrl_prefetch(const void *address)
+{
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#else
+    (void)address;
+#endif
+}
+
 #endif

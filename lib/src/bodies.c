@@ -14,6 +14,8 @@
 #define SPLIT_SIGMAS 4.5f   /* misfit of a whole body, in standard deviations of chi squared */
 #define ELSEWHERE_COST 8.0f /* chi squared a feature may lose by moving to another body */
 #define FAR_SIGMAS 5.0f     /* a range, of some ten rests, that noise does not reach */
+#define LITTLE 6.0f         /* a motion apart, in units of what tells a joint */
+#define CUT_GAIN 12.0f      /* chi squared by which another cut must be better */
 #define NEVER 1e9f
 #define REASSIGN_ROUNDS 6
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
@@ -29,6 +31,13 @@ static void fit_body(struct grrl_perception *p, uint8_t body)
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t n = grrl_body_slots(p, body, slots);
     grrl_rigid_fit(p, slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS);
+}
+
+static void fit_all(struct grrl_perception *p)
+{
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        fit_body(p, b);
+    }
 }
 
 /* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
@@ -145,6 +154,18 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
+static uint16_t slots_of_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                              uint16_t *slots)
+{
+    uint16_t n = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == a || p->body_of[i] == b) {
+            slots[n++] = i;
+        }
+    }
+    return n;
+}
+
 /* Whether two bodies may be one: they moved apart in no keyframe. */
 static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
@@ -152,29 +173,26 @@ static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t 
         return NEVER;
     }
     uint16_t slots[GRRL_MAX_FEATURES];
-    uint16_t n = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == a || p->body_of[i] == b) {
-            slots[n++] = i;
-        }
-    }
+    uint16_t n = slots_of_both(p, a, b, slots);
     return apart_evidence(p, slots, n, p->body_of, a, b);
 }
 
-/*
- * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
- * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
- * would be tied to either.
- */
-static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
+/* How far two bodies moved apart from rest to rest, and the variances of that. */
+struct range {
+    float turn;
+    float shift2;
+    float turn_var; /* the largest: noise alone must not look far enough */
+    float shift_var;
+};
+
+static struct range range_between(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     float turn[2] = {0.0f, 0.0f};
     struct grrl_vec2 shift[2] = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     struct grrl_pose reference = {{0.0f, 0.0f}, 1.0f, 0.0f}; /* of b in a, at the first rest */
     struct grrl_vec2 middle = {0.0f, 0.0f};
+    struct range range = {0};
     bool begun = false;
-    float turn_var = 0.0f; /* the largest: noise alone must not look far enough */
-    float shift_var = 0.0f;
     float noise2 = p->config.noise_m * p->config.noise_m;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
@@ -193,8 +211,8 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
         float tv = noise2 * (1.0f / (pa->inertia + 1e-9f) + 1.0f / (pb->inertia + 1e-9f));
         float sv =
             noise2 * (1.0f / pa->mass + 1.0f / pb->mass) + 0.25f * tv * grrl_vec2_dot(r.p, r.p);
-        turn_var = tv > turn_var ? tv : turn_var;
-        shift_var = sv > shift_var ? sv : shift_var;
+        range.turn_var = tv > range.turn_var ? tv : range.turn_var;
+        range.shift_var = sv > range.shift_var ? sv : range.shift_var;
         /* where b takes the point half way between them */
         struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
         struct grrl_vec2 d = grrl_vec2_sub(at, middle);
@@ -206,21 +224,44 @@ static bool far_enough(const struct grrl_perception *p, uint8_t a, uint8_t b)
         shift[1].x = d.x > shift[1].x ? d.x : shift[1].x;
         shift[1].y = d.y > shift[1].y ? d.y : shift[1].y;
     }
-    float turned = turn[1] - turn[0];
-    struct grrl_vec2 range = grrl_vec2_sub(shift[1], shift[0]);
-    float shifted2 = grrl_vec2_dot(range, range);
+    struct grrl_vec2 shifted = grrl_vec2_sub(shift[1], shift[0]);
+    range.turn = turn[1] - turn[0];
+    range.shift2 = grrl_vec2_dot(shifted, shifted);
+    return range;
+}
+
+/*
+ * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
+ * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
+ * would be tied to either.
+ */
+static bool is_far(const struct grrl_perception *p, const struct range *range)
+{
     float least_turn = p->config.min_turn_rad;
     float least_shift = p->config.min_slide_m;
     float sigmas2 = FAR_SIGMAS * FAR_SIGMAS;
-    return (turned > least_turn && turned * turned > sigmas2 * turn_var) ||
-           (shifted2 > least_shift * least_shift && shifted2 > sigmas2 * shift_var);
+    return (range->turn > least_turn && range->turn * range->turn > sigmas2 * range->turn_var) ||
+           (range->shift2 > least_shift * least_shift &&
+            range->shift2 > sigmas2 * range->shift_var);
+}
+
+/* In units of what tells a joint. */
+static bool is_less(const struct grrl_perception *p, const struct range *range, float units)
+{
+    float little_turn = units * p->config.min_turn_rad;
+    float little_shift = units * p->config.min_slide_m;
+    return range->turn < little_turn && range->shift2 < little_shift * little_shift;
 }
 
 static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
+    struct range range = range_between(p, a, b);
+    bool far = is_far(p, &range);
+    if (far && !is_less(p, &range, LITTLE * p->config.slack)) {
+        return false; /* beyond doubt; a fit of both together costs much more than this */
+    }
     float evidence = merge_evidence(p, a, b);
-    return evidence < MERGE_EVIDENCE * p->config.slack ||
-           (evidence < NEVER && !far_enough(p, a, b));
+    return evidence < MERGE_EVIDENCE * p->config.slack || (evidence < NEVER && !far);
 }
 
 static void merge_bodies(struct grrl_perception *p)
@@ -296,8 +337,8 @@ static bool reassign_once(struct grrl_perception *p)
         changed = changed || p->body_of[i] != best;
         p->body_of[i] = best;
     }
-    for (uint8_t b = 0; b < p->n_bodies && changed; b++) {
-        fit_body(p, b);
+    if (changed) {
+        fit_all(p);
     }
     return changed;
 }
@@ -321,6 +362,24 @@ static void dissolve_small(struct grrl_perception *p)
             }
             remove_body(p, b--);
         }
+    }
+}
+
+/* What never moved and hangs together only by what has moved away is the table beside the object.
+ */
+static void give_back_the_table(struct grrl_perception *p)
+{
+    for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
+        if (body_has_moved(p, b) || grrl_hangs_together(p, b)) {
+            continue;
+        }
+        for (uint16_t i = 0; i < p->n_slots; i++) {
+            if (p->body_of[i] == b) {
+                p->body_of[i] = GRRL_FEATURE_BACKGROUND;
+                p->blob_of[i] = 0;
+            }
+        }
+        remove_body(p, b--);
     }
 }
 
@@ -366,6 +425,45 @@ static void dissolve_redundant(struct grrl_perception *p)
             }
             remove_body(p, b--);
             reassign(p);
+        }
+    }
+}
+
+/* Two bodies that moved apart only a little are cut anew, where they part best (cut.c). */
+static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct range range = range_between(p, a, b);
+    if (!is_less(p, &range, LITTLE) || !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
+        return;
+    }
+    struct grrl_together together;
+    uint16_t part[GRRL_MAX_FEATURES];
+    uint16_t n_part;
+    together.n = slots_of_both(p, a, b, together.slot);
+    grrl_rigid_fit(p, together.slot, together.n, together.shape, together.pose, 1);
+    float gain = grrl_best_cut(p, &together, a, part, &n_part);
+    if (gain < CUT_GAIN * p->config.slack) {
+        return;
+    }
+    int of_a = 0; /* the part goes on as the body most of it was, so that numbers stay */
+    for (uint16_t i = 0; i < n_part; i++) {
+        of_a += p->body_of[part[i]] == a ? 1 : -1;
+    }
+    for (uint16_t i = 0; i < together.n; i++) {
+        p->body_of[together.slot[i]] = of_a > 0 ? b : a;
+    }
+    for (uint16_t i = 0; i < n_part; i++) {
+        p->body_of[part[i]] = of_a > 0 ? a : b;
+    }
+    fit_body(p, a);
+    fit_body(p, b);
+}
+
+static void cut_all_anew(struct grrl_perception *p)
+{
+    for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
+            cut_anew(p, a, b);
         }
     }
 }
@@ -455,8 +553,9 @@ void grrl_bodies_update(struct grrl_perception *p)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         p->has_moved[i] = moves(p, i);
     }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
-        fit_body(p, b);
+    fit_all(p);
+    if (grrl_drop_outliers(p)) {
+        fit_all(p);
     }
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         split_body(p, b);
@@ -468,8 +567,10 @@ void grrl_bodies_update(struct grrl_perception *p)
     }
     dissolve_small(p);
     merge_bodies(p);
+    cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
+    give_back_the_table(p);
     dissolve_redundant(p);
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         p->bend_m2[b] = bend_of(p, b);

@@ -72,7 +72,9 @@ static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_
 {
     uint8_t n = 0;
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
-        n = (uint8_t)(n + (((unsigned)parts >> i & 1u) != 0 && a->part[i] != b->part[i]));
+        if (((uint32_t)parts >> i & 1u) != 0 && a->part[i] != b->part[i]) {
+            ++n;
+        }
     }
     return n;
 }

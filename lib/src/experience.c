@@ -7,8 +7,8 @@
 #include "grrl/geometry.h"
 
 _Static_assert(GRRL_MAX_JOINTS > 64 ||
-                   sizeof(struct grrl_experience_state) + sizeof(struct grrl_signature) <= 512,
-               "a stored state and its share of the index");
+                   sizeof(struct grrl_experience_state) + sizeof(struct grrl_experience_row) <= 512,
+               "a stored state and its row in the index");
 
 void grrl_experience_init(struct grrl_experience_store *store, struct grrl_experience_state *states,
                           uint32_t states_capacity, struct grrl_experience *experiences,
@@ -25,27 +25,26 @@ void grrl_experience_init(struct grrl_experience_store *store, struct grrl_exper
     }
 }
 
-static void write_index(struct grrl_experience_store *store, uint32_t state)
-{
-    for (uint32_t word = 0; word < GRRL_SIGNATURE_WORDS && store->index != NULL; ++word) {
-        store->index[(size_t)word * store->states_capacity + state] =
-            store->states[state].signature.word[word];
-    }
-}
-
 void grrl_experience_clear(struct grrl_experience_store *store)
 {
-    uint64_t *index = store->index;
+    struct grrl_experience_index *index = store->index;
     grrl_experience_init(store, store->states, store->states_capacity, store->experiences,
                          store->experiences_capacity);
     store->index = index;
+    if (index != NULL) {
+        grrl_experience_index_clear(index);
+    }
 }
 
-void grrl_experience_use_index(struct grrl_experience_store *store, uint64_t *index)
+void grrl_experience_use_index(struct grrl_experience_store *store,
+                               struct grrl_experience_index *index,
+                               struct grrl_experience_row *rows)
 {
     store->index = index;
+    index->rows = rows;
+    grrl_experience_index_clear(index);
     for (uint32_t i = 0; i < store->n_states; ++i) {
-        write_index(store, i);
+        grrl_experience_index_add(index, &store->states[i], i);
     }
 }
 
@@ -90,6 +89,7 @@ bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experi
         }
     }
     grrl_signature(graph, GRRL_ALL_PROPERTIES, &state->signature);
+    grrl_paths(graph, &state->paths);
     if (order != NULL) {
         memcpy(order, full.order, graph->n);
     }
@@ -126,7 +126,7 @@ uint32_t grrl_experience_next_in(const struct grrl_experience_store *store, int 
     return skip_others(store, table, key, store->states[from].chain[table]);
 }
 
-/* Puts a state into its buckets and the index, or takes it out of the buckets. */
+/* Puts a state into its buckets and the index, or takes it out. */
 static void link_state(struct grrl_experience_store *store, uint32_t state)
 {
     for (int table = 0; table < GRRL_EXPERIENCE_TABLES; ++table) {
@@ -134,7 +134,9 @@ static void link_state(struct grrl_experience_store *store, uint32_t state)
         store->states[state].chain[table] = *head;
         *head = state;
     }
-    write_index(store, state);
+    if (store->index != NULL) {
+        grrl_experience_index_add(store->index, &store->states[state], state);
+    }
 }
 
 static void unlink_state(struct grrl_experience_store *store, uint32_t state)
@@ -145,6 +147,9 @@ static void unlink_state(struct grrl_experience_store *store, uint32_t state)
             reference = &store->states[*reference].chain[table];
         }
         *reference = store->states[state].chain[table];
+    }
+    if (store->index != NULL) {
+        grrl_experience_index_remove(store->index, &store->states[state], state);
     }
 }
 

@@ -19,6 +19,16 @@
 /* The tables of a store. */
 enum { GRRL_TABLE_EXACT, GRRL_TABLE_SHAPE };
 
+/* Whether a state could be a sub-structure of another, properties aside, as far as counts tell:
+ * without branches, which would go either way at random. */
+static inline bool grrl_experience_fits(uint64_t part, const struct grrl_paths *part_paths,
+                                        uint64_t whole, const struct grrl_paths *whole_paths)
+{
+    const uint64_t guards = UINT64_C(0x8080808080808080);
+    return ((((whole | guards) - part) & guards) == guards) &
+           grrl_paths_within(part_paths, whole_paths);
+}
+
 /* What is stored of a state, but for its places in tables and lists. False if its canonical form is
  * undecided. order may be NULL; else canonical link i is link order[i] of the graph. */
 bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experience_state *state,
@@ -46,5 +56,26 @@ uint32_t grrl_experience_add(struct grrl_experience_store *store, uint32_t state
 
 /* Removes a state without experiences; the last state moves into the gap. */
 void grrl_experience_remove_state(struct grrl_experience_store *store, uint32_t state);
+
+/* --- the index (experience_index.c) --- */
+
+/* Empties an index, enters a state, takes one out. */
+void grrl_experience_index_clear(struct grrl_experience_index *index);
+void grrl_experience_index_add(struct grrl_experience_index *index,
+                               const struct grrl_experience_state *state, uint32_t number);
+void grrl_experience_index_remove(struct grrl_experience_index *index,
+                                  const struct grrl_experience_state *state, uint32_t number);
+
+/*
+ * States that could be a sub- or super-structure of the current one with so many links and joints
+ * less or more, in the order of their numbers: if there are more than `most`, the lowest.
+ */
+unsigned grrl_experience_index_find(const struct grrl_experience_index *index,
+                                    const struct grrl_experience_state *current, unsigned distance,
+                                    unsigned most, uint32_t *states);
+
+/* No state is farther than this. */
+unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,
+                                     const struct grrl_experience_state *current);
 
 #endif

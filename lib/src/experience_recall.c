@@ -14,8 +14,9 @@ struct job {
     const struct grrl_experience_store *store;
     const struct grrl_graph *current;
     struct grrl_recall *recall;
-    uint32_t budget; /* left for the stored state, */
-    uint32_t steps;  /* and for the sub-structures of the recall */
+    uint32_t budget;                /* left for the stored state, */
+    uint32_t steps;                 /* and for the sub-structures of the recall */
+    uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of it */
@@ -79,7 +80,8 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
-        for (uint8_t c = 0; c < job->current->n; ++c) {
+        for (uint32_t open = job->open[experience->direction]; open != 0; open &= open - 1u) {
+            uint8_t c = grrl_first_bit(open);
             if (improves(job, i, &job->recall->entry[c][experience->direction]) &&
                 could_bind(job, experience->link, c)) {
                 wanted->to[experience->link] |= grrl_bit(c);
@@ -281,130 +283,152 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
 
 /* --- sub-structures --------------------------------------------------------------------------- */
 
+/* No two states differ by more links and joints. */
+enum { FARTHEST = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
+
+_Static_assert(FARTHEST <= UINT8_MAX, "distances are bytes");
+
 /* The states closest to the current one, as far as signatures tell. */
 struct nearest {
     unsigned n;
-    unsigned limit; /* distances from here on have no room */
     uint32_t state[GRRL_RECALL_STATES];
     uint8_t distance[GRRL_RECALL_STATES];
 };
 
-/* Makes room for one at this distance: of the farthest the youngest go. False: it is no closer. */
-static bool make_room(struct nearest *nearest, unsigned distance)
+static bool is_part(const struct grrl_experience_state *part,
+                    const struct grrl_experience_state *whole)
 {
-    unsigned farthest = 0;
-    for (unsigned i = 0; i < nearest->n; ++i) {
-        farthest = nearest->distance[i] > farthest ? nearest->distance[i] : farthest;
-    }
-    nearest->limit = farthest;
-    if (distance >= farthest) {
-        return false;
-    }
-    unsigned to_go = GRRL_RECALL_STATES / 4 + 1; /* some at a time: this is rare */
-    unsigned kept = nearest->n;
-    for (unsigned i = nearest->n; i-- > 0;) {
-        if (nearest->distance[i] == farthest && to_go > 0) {
-            --to_go;
-            --kept;
-            nearest->distance[i] = 0; /* gone */
-        }
-    }
-    unsigned at = 0;
-    for (unsigned i = 0; i < nearest->n; ++i) {
-        if (nearest->distance[i] != 0) {
-            nearest->state[at] = nearest->state[i];
-            nearest->distance[at++] = nearest->distance[i];
-        }
-    }
-    nearest->n = kept;
-    return true;
+    return grrl_experience_fits(part->signature.word[0], &part->paths, whole->signature.word[0],
+                                &whole->paths);
 }
 
-/* Links and joints one of the two has more; each count is one of the lowest bytes of the word. */
-static unsigned distance_between(uint64_t larger, uint64_t smaller)
+/* Links and joints that only one of the two has if one is a sub-structure of the other. With equal
+ * counts of them they are isomorphic or nothing: not wanted here, as is what does not fit: 0. */
+static unsigned distance_of(const struct grrl_experience_state *stored,
+                            const struct grrl_experience_state *current)
 {
-    uint64_t more = larger - smaller;
-    return (unsigned)((more & 0xffu) + (more >> 8 & 0xffu) + (more >> 16 & 0xffu));
+    const unsigned size = (unsigned)stored->n + stored->joints[0] + stored->joints[1];
+    const unsigned own = (unsigned)current->n + current->joints[0] + current->joints[1];
+    if (size < own) {
+        return is_part(stored, current) ? own - size : 0;
+    }
+    return size > own && is_part(current, stored) ? size - own : 0;
 }
 
-static uint64_t word_of(const struct grrl_experience_store *store, unsigned word, uint32_t state)
+/* Without an index: all that fit if there is room, else those up to the distance at which there no
+ * longer is, of the last distance those with the lowest numbers. */
+static void scan_states(const struct grrl_experience_store *store,
+                        const struct grrl_experience_state *current, uint32_t room,
+                        struct nearest *nearest)
 {
-    return store->index != NULL ? store->index[(size_t)word * store->states_capacity + state]
-                                : store->states[state].signature.word[word];
-}
-
-/* Whether the counts of the shape allow one to be within the other. */
-static bool fits_within(uint64_t part, uint64_t whole)
-{
-    const uint64_t guards = UINT64_C(0x8080808080808080);
-    return (((whole | guards) - part) & guards) == guards;
-}
-
-/* With equal counts of links and joints they are isomorphic or nothing: not wanted here. */
-static void find_nearest(const struct grrl_experience_store *store,
-                         const struct grrl_signature *current, struct nearest *nearest)
-{
-    const uint64_t counts = current->word[0];
-    nearest->n = 0;
-    nearest->limit = UINT8_MAX + 1u;
+    uint32_t count[FARTHEST + 1] = {0};
+    unsigned last = 0;
     for (uint32_t i = 0; i < store->n_states; ++i) {
-        uint64_t stored = word_of(store, 0, i);
-        bool within = fits_within(stored, counts);
-        if (!within && !fits_within(counts, stored)) {
+        ++count[distance_of(&store->states[i], current)];
+    }
+    while (last < FARTHEST && count[last + 1] <= room) {
+        room -= count[++last];
+    }
+    nearest->n = 0;
+    for (uint32_t i = 0; i < store->n_states; ++i) {
+        unsigned distance = distance_of(&store->states[i], current);
+        if (distance == 0 || distance > last + 1 || (distance == last + 1 && room == 0)) {
             continue;
         }
-        unsigned distance =
-            within ? distance_between(counts, stored) : distance_between(stored, counts);
-        if (distance == 0 || distance >= nearest->limit) {
-            continue;
-        }
-        uint64_t paths = word_of(store, 1, i);
-        if (within ? !fits_within(paths, current->word[1])
-                   : !fits_within(current->word[1], paths)) {
-            continue;
-        }
-        if (nearest->n == GRRL_RECALL_STATES && !make_room(nearest, distance)) {
-            continue;
-        }
+        room -= distance == last + 1;
         nearest->state[nearest->n] = i;
         nearest->distance[nearest->n++] = (uint8_t)distance;
     }
 }
 
-/* Whether every action has an entry. */
-static bool is_complete(const struct grrl_recall *recall)
+/* What states of the next distance could still improve: what has no entry. False: nothing. */
+static bool find_open(struct job *job)
 {
-    for (uint8_t link = 0; link < recall->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
-            if (recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
-                return false;
+    bool any = false;
+    for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+        job->open[direction] = 0;
+        for (uint8_t link = 0; link < job->current->n; ++link) {
+            if (job->recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
+                job->open[direction] |= grrl_bit(link);
+                any = true;
             }
         }
     }
-    return true;
+    return any;
+}
+
+static bool knows_open_direction(const struct job *job, const struct grrl_experience_state *stored)
+{
+    for (uint32_t i = stored->first; i != GRRL_NO_EXPERIENCE; i = job->store->experiences[i].next) {
+        if (job->open[job->store->experiences[i].direction] != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Of thousands of states few are in a cache: asks for the next ones, their first lines before what
+ * these lead to. */
+static void look_ahead(const struct grrl_experience_store *store, const struct nearest *nearest,
+                       unsigned k)
+{
+    enum { FAR = 8, NEAR = 4, LINE_BYTES = 64 };
+    if (k + FAR < nearest->n) {
+        const struct grrl_experience_state *state = &store->states[nearest->state[k + FAR]];
+        grrl_prefetch(state);
+        grrl_prefetch(&state->n);
+    }
+    if (k + NEAR < nearest->n) {
+        const struct grrl_experience_state *state = &store->states[nearest->state[k + NEAR]];
+        grrl_prefetch(&store->experiences[state->first]);
+        grrl_prefetch(state->edge);
+        for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
+            grrl_prefetch(&state->label[i]);
+        }
+    }
+}
+
+static void consult_part(struct job *job, uint32_t state, unsigned distance,
+                         const struct grrl_recall_config *config,
+                         const struct grrl_experience_state *current, grrl_label places)
+{
+    if (!knows_open_direction(job, &job->store->states[state])) {
+        return;
+    }
+    take_state(job, state, config);
+    job->budget = job->budget < job->steps ? job->budget : job->steps;
+    const uint32_t granted = job->budget;
+    job->forth = is_part(job->stored, current);
+    consult_substructure(job, current, places, (uint8_t)distance);
+    job->steps -= granted - job->budget;
 }
 
 /* The closest states first, so that the others need a search only for what is still open. */
 static void consult_parts(struct job *job, const struct grrl_recall_config *config,
                           const struct grrl_experience_state *current, grrl_label places)
 {
+    const struct grrl_experience_index *index = job->store->index;
     struct nearest nearest;
-    find_nearest(job->store, &current->signature, &nearest);
     job->kind = GRRL_MATCH_MONOMORPHISM;
-    unsigned left = nearest.n;
     job->steps = GRRL_RECALL_STEPS;
-    for (unsigned distance = 1; left > 0 && !is_complete(job->recall); ++distance) {
+    unsigned left = config->states < GRRL_RECALL_STATES ? config->states : GRRL_RECALL_STATES;
+    if (index == NULL) {
+        scan_states(job->store, current, left, &nearest);
+        left = nearest.n;
+    }
+    unsigned reach = index == NULL ? FARTHEST : grrl_experience_index_reach(index, current);
+    for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
+        if (index != NULL) {
+            nearest.n = grrl_experience_index_find(index, current, d, left, nearest.state);
+        }
         for (unsigned k = 0; k < nearest.n; ++k) {
-            if (nearest.distance[k] != distance) {
-                continue;
+            if (index != NULL) {
+                look_ahead(job->store, &nearest, k);
             }
-            --left;
-            take_state(job, nearest.state[k], config);
-            job->budget = job->budget < job->steps ? job->budget : job->steps;
-            const uint32_t granted = job->budget;
-            job->forth = fits_within(job->stored->signature.word[0], current->signature.word[0]);
-            consult_substructure(job, current, places, (uint8_t)distance);
-            job->steps -= granted - job->budget;
+            if (index != NULL || nearest.distance[k] == d) {
+                consult_part(job, nearest.state[k], d, config, current, places);
+                --left;
+            }
         }
     }
 }
@@ -426,6 +450,9 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
     }
     grrl_label places = places_in_use(state);
     struct job job = {.store = store, .current = state, .recall = recall};
+    for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+        job.open[direction] = grrl_bits_below(state->n);
+    }
     consult_isomorphic(&job, config, &current, places);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
         consult_parts(&job, config, &current, places);

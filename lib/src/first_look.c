@@ -88,6 +88,34 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
     return n;
 }
 
+bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[0];
+    bool reached[GRRL_MAX_FEATURES] = {false};
+    uint16_t queue[GRRL_MAX_FEATURES];
+    for (uint16_t start = 0; start < p->n_slots; start++) {
+        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0) {
+            continue;
+        }
+        uint16_t n = 1;
+        queue[0] = start;
+        reached[start] = true;
+        for (uint16_t next = 0; next < n; next++) {
+            for (uint16_t j = 0; j < p->n_slots; j++) {
+                if (p->body_of[j] == body && !reached[j] && key->weight[j] > 0 &&
+                    grrl_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
+                    reached[j] = true;
+                    queue[n++] = j;
+                }
+            }
+        }
+        if (n >= p->config.min_features) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void grrl_first_look(struct grrl_perception *p)
 {
     float values[GRRL_MAX_FEATURES];
@@ -107,12 +135,13 @@ void grrl_first_look(struct grrl_perception *p)
         return;
     }
     float reach = object_reach(values, n);
+    p->reach2_m2 = reach * reach;
     uint8_t blob = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS) {
             continue;
         }
-        uint16_t size = grow_blob(p, i, reach * reach, (uint8_t)(blob + 1));
+        uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(blob + 1));
         bool is_body = size >= p->config.min_features + 1;
         for (uint16_t j = 0; j < p->n_slots; j++) {
             if (p->blob_of[j] == blob + 1) {

@@ -16,7 +16,9 @@
 #define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
-#define MISFIT_MAX 40.0f    /* chi squared beyond which a type does not explain the motion at all */
+#define MISFIT_BASE 10.0f   /* chi squared beyond which a type does not explain the motion, .. */
+#define MISFIT_SIGMAS 3.0f  /* .. and its standard deviations over all keyframes */
+#define MISFIT_WEIGHT 0.1f  /* of chi squared missed, among joints equally well supported */
 #define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
 #define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
 
@@ -438,8 +440,9 @@ bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     float chi2[3] = {revolute.excess, prismatic.excess, untied};
     model_probabilities(chi2, e->p);
     float support = untied - e->fit.excess;
-    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e);
-    bool fits = e->fit.excess < MISFIT_MAX + 0.5f * (float)motion.n;
+    float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e) - misfit;
+    bool fits = e->fit.excess < MISFIT_BASE + 2.0f * MISFIT_SIGMAS * grrl_sqrt((float)motion.n);
     return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
            is_near(p, e);
 }

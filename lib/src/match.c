@@ -112,6 +112,7 @@ static void start(struct grrl_match *match)
     match->used = 0;
     if (match->pattern->graph->n > 0)
         match->candidates[0] = open_depth(match, 0, 0);
+    memset(match->image, GRRL_UNMAPPED, sizeof match->image); /* those without a vertex stay so */
 }
 
 void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
@@ -196,8 +197,7 @@ enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
         if (status != GRRL_OK)
             return status;
     }
-    memset(map, GRRL_UNMAPPED, GRRL_MAX_LINKS);
-    memcpy(map, match->image, n);
+    memcpy(map, match->image, sizeof match->image);
     return GRRL_OK;
 }
 

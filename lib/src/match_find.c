@@ -3,9 +3,9 @@
 #include "grrl/canonical.h"
 #include "match_private.h"
 
-/* Steps before a method that answers for certain takes over: a search that goes straight takes one
- * a link. Without plans, as many steps before plans are made. */
-enum { QUICK_STEPS = 8 * GRRL_MAX_LINKS, UNPLANNED_STEPS = 2 * GRRL_MAX_LINKS };
+/* Steps before a method that answers for certain takes over, and without plans before they are
+ * made: a search that goes straight takes one a link. */
+enum { QUICK_STEPS = 8 * GRRL_MAX_LINKS };
 
 /* An isomorphism by canonical forms. */
 static enum grrl_status find_canonical(const struct grrl_match_plan *pattern,
@@ -58,10 +58,8 @@ enum grrl_status grrl_match_find(enum grrl_match_kind kind, const struct grrl_gr
                                  const struct grrl_graph *target, grrl_label mask, uint32_t budget,
                                  uint8_t *map)
 {
-    uint32_t first = budget < UNPLANNED_STEPS ? budget : UNPLANNED_STEPS;
-    struct grrl_match match;
-    grrl_match_begin(&match, kind, pattern, target, mask, first);
-    enum grrl_status status = grrl_match_next(&match, map);
+    uint32_t first = budget < QUICK_STEPS ? budget : QUICK_STEPS;
+    enum grrl_status status = grrl_match_quick(kind, pattern, target, mask, first, map);
     if (status != GRRL_ERR_UNDECIDED)
         return status;
     struct grrl_match_plan plan[2];

@@ -23,16 +23,6 @@ static inline uint32_t hash_label(grrl_label label)
     return (uint32_t)label * SPREAD_LOW + (uint32_t)(label >> 32) * SPREAD_HIGH;
 }
 
-/* grrl_bit_count in shifts and sums alone, which compilers turn into vector instructions. */
-static inline uint32_t count_bits(uint32_t x)
-{
-    x -= x >> 1 & UINT32_C(0x55555555);
-    x = (x & UINT32_C(0x33333333)) + (x >> 2 & UINT32_C(0x33333333));
-    x = (x + (x >> 4)) & UINT32_C(0x0f0f0f0f);
-    x += x >> 8;
-    return (x + (x >> 16)) & 0x3fu;
-}
-
 void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *graph,
                        grrl_label mask)
 {
@@ -41,8 +31,8 @@ void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *gr
     for (unsigned i = 0; i < graph->n; i++)
         plan->label[i] = grrl_label_masked(graph->label[i], mask);
     for (unsigned i = 0; i < graph->n; i++) {
-        uint32_t revolute = count_bits(graph->joined[GRRL_REVOLUTE][i]);
-        uint32_t prismatic = count_bits(graph->joined[GRRL_PRISMATIC][i]);
+        uint32_t revolute = grrl_match_count(graph->joined[GRRL_REVOLUTE][i]);
+        uint32_t prismatic = grrl_match_count(graph->joined[GRRL_PRISMATIC][i]);
         ends[GRRL_REVOLUTE] += revolute;
         ends[GRRL_PRISMATIC] += prismatic;
         plan->growing[i] = revolute | prismatic << 8;

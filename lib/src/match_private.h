@@ -16,7 +16,25 @@ static inline uint32_t grrl_match_neighbours(const struct grrl_graph *graph, uin
     return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
 }
 
-/* The part of a plan that pays for a single search: labels, joints, and degrees as the only growing
+/* grrl_bit_count in shifts and sums alone, which compilers turn into vector instructions. */
+static inline uint32_t grrl_match_count(uint32_t x)
+{
+    x -= x >> 1 & UINT32_C(0x55555555);
+    x = (x & UINT32_C(0x33333333)) + (x >> 2 & UINT32_C(0x33333333));
+    x = (x + (x >> 4)) & UINT32_C(0x0f0f0f0f);
+    x += x >> 8;
+    return (x + (x >> 16)) & 0x3fu;
+}
+
+/*
+ * One mapping as in grrl_match_find, by a search that needs nothing made beforehand.
+ * GRRL_ERR_UNDECIDED: the budget is used up.
+ */
+enum grrl_status grrl_match_quick(enum grrl_match_kind kind, const struct grrl_graph *pattern,
+                                  const struct grrl_graph *target, grrl_label mask, uint32_t budget,
+                                  uint8_t *map);
+
+/* The part of a plan that pays for one enumeration: labels, joints, and degrees as the only growing
  * counts; then colours of both for isomorphism. No order, cells or signature. */
 void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *graph,
                        grrl_label mask);

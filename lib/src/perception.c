@@ -153,22 +153,29 @@ static bool find_slot(struct grrl_perception *p, int32_t id, uint16_t *slot, boo
     return true;
 }
 
-/* Whether a point continues its track; counts and drops outliers, restarts a track that stays. */
+/*
+ * Whether a point continues its track; counts and drops outliers, restarts a track that stays away.
+ * An outlier near enough to pass must not make one of the next point: it may continue the point
+ * before.
+ */
 static bool accept_point(struct grrl_perception *p, uint16_t slot, bool is_new,
                          struct grrl_vec2 point)
 {
     if (!is_new) {
         float gap = (float)(p->counts.frames - p->last_frame[slot]);
         float reach = p->config.jump_m * (gap < 2.0f ? gap : 2.0f);
-        if (grrl_vec2_length(grrl_vec2_sub(point, p->last[slot])) > reach) {
+        if (grrl_distance2(point, p->last[slot]) > reach * reach &&
+            grrl_distance2(point, p->before[slot]) > reach * reach) {
             p->counts.outliers++;
             if (++p->jumps[slot] < JUMPS_UNTIL_NEW) {
                 return false;
             }
             forget_history(p, slot);
+            is_new = true;
         }
     }
     p->jumps[slot] = 0;
+    p->before[slot] = is_new ? point : p->last[slot];
     p->last[slot] = point;
     p->last_frame[slot] = p->counts.frames;
     return true;

@@ -4,7 +4,9 @@
  *   perception.c  tracks and keyframes: what was seen
  *   rigid.c       poses and residuals of a set of features taken as one rigid body
  *   first_look.c  what may be a body before anything has moved
+ *   outliers.c    points that no motion explains
  *   consensus.c   the largest set of features that moved as one
+ *   cut.c         the line along which two bodies part
  *   bodies.c      which features belong together: split, reassign, merge
  *   joints.c      what ties two bodies together
  *   structure.c   the joints of all bodies, and the model
@@ -54,6 +56,13 @@ uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t
 /* first_look.c: the candidate bodies in the first keyframe. */
 void grrl_first_look(struct grrl_perception *p);
 
+/* Whether enough features of a body lay densely there, without those of others between them. */
+bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body);
+
+/* outliers.c: takes lone points off their bodies out of the keyframes of pushes not yet examined;
+ * whether there were any. */
+bool grrl_drop_outliers(struct grrl_perception *p);
+
 /*
  * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
  * together, in standard deviations of chi squared; score[k] is that of keyframe k.
@@ -65,6 +74,24 @@ float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16
  * size, members[] holds it. */
 uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                         const float *score, uint16_t *members);
+
+/* Features fitted as one rigid body. */
+struct grrl_together {
+    uint16_t n;
+    uint16_t slot[GRRL_MAX_FEATURES];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES];
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES];
+};
+
+/*
+ * cut.c: the straight cut that parts the features best, if it is better than what they are now:
+ * those of `body` and the others. Returns by how much in chi squared; part[] holds one side.
+ */
+float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
+                    uint8_t body, uint16_t *part, uint16_t *n_part);
+
+/* Whether a body's features part along some line more than noise explains. */
+bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
 void grrl_body_add(struct grrl_perception *p);

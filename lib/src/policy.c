@@ -4,15 +4,16 @@
 
 void grrl_policy_config_default(struct grrl_policy_config *config)
 {
-    *config = (struct grrl_policy_config){
-        .kind = GRRL_POLICY_LEARN,
-        .alpha = 0.3f,
-        .gamma = 0.3f,
-        .beta = 2.0f,
-        .z = 0.5f,
-        .prior_sd = 1.0f,
-        .trial_reward = 1.0f,
-        .recall = {.deepest = GRRL_RECALL_SUBSTRUCTURE, .budget = GRRL_MATCH_BUDGET}};
+    *config = (struct grrl_policy_config){.kind = GRRL_POLICY_LEARN,
+                                          .alpha = 0.3f,
+                                          .gamma = 0.3f,
+                                          .beta = 2.0f,
+                                          .z = 0.5f,
+                                          .prior_sd = 1.0f,
+                                          .trial_reward = 1.0f,
+                                          .recall = {.deepest = GRRL_RECALL_SUBSTRUCTURE,
+                                                     .budget = GRRL_MATCH_BUDGET,
+                                                     .states = GRRL_RECALL_STATES}};
     grrl_case_config_default(&config->cases);
 }
 
@@ -41,6 +42,8 @@ enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *confi
                                config->recall.deepest == GRRL_RECALL_RELAXED ||
                                config->recall.deepest == GRRL_RECALL_SUBSTRUCTURE},
         {"recall.budget", config->recall.budget >= 1},
+        {"recall.states",
+         config->recall.states >= 1 && config->recall.states <= GRRL_RECALL_STATES},
     };
     for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; ++i) {
         if (!checks[i].fine) {

@@ -6,6 +6,8 @@
  */
 #include "perception_internal.h"
 
+#define PARALLELOGRAM_COST 20.0f /* sliding that turning explains comes after all else */
+#define SHORT_SLIDE 4.0f         /* in units of the least that tells a joint */
 #define LOOP_COST 40.0f /* chi squared by which a joint that closes a loop is better than free */
 
 /* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
@@ -54,6 +56,55 @@ static bool shares_a_pin(const struct grrl_joint_evidence *taken, uint8_t n,
         }
     }
     return false;
+}
+
+static const struct grrl_joint_evidence *find_revolute(const struct grrl_joint_evidence *e,
+                                                       uint16_t n, uint8_t a, uint8_t b)
+{
+    for (uint16_t i = 0; i < n; i++) {
+        bool is_pair = (e[i].a == a && e[i].b == b) || (e[i].a == b && e[i].b == a);
+        if (is_pair && e[i].type == GRRL_REVOLUTE) {
+            return &e[i];
+        }
+    }
+    return NULL;
+}
+
+/*
+ * Whether two pivots on a third body explain that these two slide past each other without a turn,
+ * as opposite links of a parallelogram do: the third turns against either, and its turn times the
+ * distance of its pivots is as much as they slid.
+ */
+static bool is_parallelogram(const struct grrl_perception *p, const struct grrl_joint_evidence *all,
+                             uint16_t n, const struct grrl_joint_evidence *slide)
+{
+    float slid = slide->fit.upper - slide->fit.lower;
+    for (uint8_t c = 0; c < p->n_bodies; c++) {
+        const struct grrl_joint_evidence *ac = find_revolute(all, n, slide->a, c);
+        const struct grrl_joint_evidence *bc = find_revolute(all, n, slide->b, c);
+        if (ac == NULL || bc == NULL) {
+            continue;
+        }
+        struct grrl_vec2 pa = ac->a == c ? ac->fit.in_a : ac->fit.in_b;
+        struct grrl_vec2 pb = bc->a == c ? bc->fit.in_a : bc->fit.in_b;
+        float turned = ac->fit.upper - ac->fit.lower;
+        if (grrl_vec2_length(grrl_vec2_sub(pa, pb)) * turned > 0.5f * slid) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/*
+ * Joints that turned too little to be told bend the bodies they are in, and bent bodies seem to
+ * slide: half a parallelogram past the other half. A short slide needs straight bodies.
+ */
+static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
+                                    const struct grrl_joint_evidence *e)
+{
+    bool is_short = e->fit.upper - e->fit.lower < SHORT_SLIDE * p->config.min_slide_m;
+    return e->type == GRRL_PRISMATIC && is_short &&
+           (grrl_hides_a_joint(p, e->a) || grrl_hides_a_joint(p, e->b));
 }
 
 /* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
@@ -194,9 +245,14 @@ void grrl_structure_update(struct grrl_perception *p)
     uint16_t n = 0;
     for (uint8_t a = 0; a < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (grrl_joint_weigh(p, a, b, &e[n])) {
+            if (grrl_joint_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n])) {
                 n++;
             }
+        }
+    }
+    for (uint16_t i = 0; i < n; i++) {
+        if (e[i].type == GRRL_PRISMATIC && is_parallelogram(p, e, n, &e[i])) {
+            e[i].order -= PARALLELOGRAM_COST;
         }
     }
     uint8_t accepted = choose_structure(p, e, n);

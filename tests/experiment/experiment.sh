@@ -71,6 +71,10 @@ figure)
         [ "$(head -c 4 figure/figure-4b.png | tail -c 3)" = PNG ] || fail "no PNG"
         grep -q 'data:image/svg+xml;base64,' figure/report.html || fail "no picture in the report"
     fi
+    run ablations --figure ablations --policy learn,paper-exact --trials 2 --experiments 2
+    grep -q '^RPRPRPR,paper-exact,none,2,1002,2,' ablations/trials.csv || fail "no ablation"
+    grep -q 'nothing but the very same structure' ablations/report.html || fail "no explanation"
+    [ ! -e ablations/ablations.svg ] || grep -q '<svg' ablations/ablations.svg || fail "no SVG"
     ;;
 transports)
     options=(--object PR --policy "random,learn,rule" --pretrain R:1 --trials 2 --experiments 2)
@@ -118,7 +122,7 @@ options)
     refused '--policy : must be' --object RR --out x --policy ''
     refused '--trials 0: must be a whole number from 1' --object RR --out x --trials 0
     refused '--jobs -1: must be' --object RR --out x --jobs -1
-    refused '--figure 5: must be 3b, 4a, 4b, 4c or all' --figure 5 --out x
+    refused '--figure 5: must be 3b, 4a, 4b, 4c, all or ablations' --figure 5 --out x
     refused '--pretrain RR: must be an object, a colon' --object RR --out x --pretrain RR
     refused '--pretrain goes with --object' --figure 4a --out x --pretrain RR:2
     refused '--noise nan: must be' --object RR --out x --noise nan

@@ -91,7 +91,28 @@ void every_policy_has_a_name_of_its_own(void **)
 {
     for (const Policy &policy : policies())
         assert_ptr_equal(find_policy(policy.name), &policy);
+    for (const Policy &policy : ablations())
+        assert_ptr_equal(find_policy(policy.name), &policy);
     assert_null(find_policy("nobody"));
+}
+
+void an_ablation_changes_what_it_says(void **)
+{
+    for (const Policy &policy : ablations()) {
+        const Policy &base = *find_policy(policy.name.substr(0, 5)); /* paper or learn */
+        grrl_learner_config whole;
+        grrl_learner_config changed;
+        std::memset(&whole, 0, sizeof whole);
+        std::memset(&changed, 0, sizeof changed);
+        grrl_learner_config_default(&whole);
+        grrl_learner_config_default(&changed);
+        base.configure(whole);
+        policy.configure(changed);
+        assert_int_equal(changed.policy.kind, whole.policy.kind);
+        assert_int_equal(grrl_policy_config_check(&changed.policy, nullptr), GRRL_OK);
+        assert_true(policy.capacity != base.capacity ||
+                    std::memcmp(&changed, &whole, sizeof whole) != 0);
+    }
 }
 
 } // namespace
@@ -104,6 +125,7 @@ int main()
         cmocka_unit_test(ranges_end_with_the_trials),
         cmocka_unit_test(csv_quotes_what_it_must),
         cmocka_unit_test(every_policy_has_a_name_of_its_own),
+        cmocka_unit_test(an_ablation_changes_what_it_says),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -7,7 +7,7 @@
  *
  * Memory is the caller's: an array of states and an array of experiences, both filled from the
  * front without gaps, from one entry on a microcontroller to millions on a host in the same code;
- * and, for thousands of states or more, an index that keeps together what every recall looks at.
+ * and, for thousands of states or more, an index that keeps states of a size side by side.
  * A state is found by a hash table whose heads live in the states themselves.
  * Used means updated, or touched because a decision rests on it. When the
  * experiences are full, the one least recently used makes room, and a state goes with its last
@@ -44,6 +44,7 @@ struct grrl_experience_state {
     uint32_t experiences;                   /* that refer to this state, at least one */
     uint32_t first;                         /* of them */
     struct grrl_signature signature;
+    struct grrl_paths paths;
     uint8_t n;                        /* links */
     uint8_t joints[GRRL_JOINT_TYPES]; /* of each type */
     uint16_t edge[GRRL_MAX_JOINTS];   /* canonical: type, link and lower link, 5 bits a link */
@@ -60,11 +61,32 @@ struct grrl_experience {
     struct grrl_q q;
 };
 
+/* What an index knows of a state. */
+struct grrl_experience_row {
+    /* private */
+    uint64_t counts; /* of the signature, those of links and joints first */
+    struct grrl_paths paths;
+    uint32_t state;
+};
+
+/* Cells of an index: states with the same numbers of links and joints of each type share one. */
+#ifndef GRRL_EXPERIENCE_CELLS
+#define GRRL_EXPERIENCE_CELLS 1024
+#endif
+
+/* An index of a store: the rows of all states, those of a cell side by side. */
+struct grrl_experience_index {
+    /* private */
+    struct grrl_experience_row *rows;
+    uint32_t start[GRRL_EXPERIENCE_CELLS + 1]; /* first row of each cell, end of the last */
+    uint8_t most[1 + GRRL_JOINT_TYPES];        /* links, joints of each type in any row */
+};
+
 struct grrl_experience_store {
     /* private */
     struct grrl_experience_state *states;
     struct grrl_experience *experiences;
-    uint64_t *index; /* or NULL; word w of the signature of state s at w * states_capacity + s */
+    struct grrl_experience_index *index; /* or NULL */
     uint32_t states_capacity;
     uint32_t experiences_capacity;
     uint32_t clock;
@@ -102,7 +124,7 @@ struct grrl_recall {
     struct grrl_recall_entry entry[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
 };
 
-/* States that one recall may search for sub-structures; five bytes of stack each. */
+/* The most states that one recall may search for sub-structures; five bytes of stack each. */
 #ifndef GRRL_RECALL_STATES
 #define GRRL_RECALL_STATES 512
 #endif
@@ -117,6 +139,7 @@ struct grrl_recall {
 struct grrl_recall_config {
     enum grrl_recall_level deepest; /* GRRL_RECALL_SUBSTRUCTURE: everything */
     uint32_t budget;                /* search steps for one stored state, >= 1 */
+    uint32_t states; /* to search for sub-structures, the closest; 1 to GRRL_RECALL_STATES */
 };
 
 /* Serialised reading and writing: return 0 when all `size` bytes were transferred. */
@@ -136,10 +159,13 @@ void grrl_experience_init(struct grrl_experience_store *store, struct grrl_exper
 void grrl_experience_clear(struct grrl_experience_store *store);
 
 /*
- * Gives the store an index: states_capacity times GRRL_SIGNATURE_WORDS numbers (40 bytes a state).
- * What is recalled stays the same; among 100,000 states it costs a tenth. At any time.
+ * Gives the store an index with states_capacity rows, 32 bytes each. What is recalled stays the
+ * same, but only states with about as many links and joints as the current one are looked at. At
+ * any time; from then on a new state costs some microseconds more.
  */
-void grrl_experience_use_index(struct grrl_experience_store *store, uint64_t *index);
+void grrl_experience_use_index(struct grrl_experience_store *store,
+                               struct grrl_experience_index *index,
+                               struct grrl_experience_row *rows);
 
 /* The structure of a stored state, in canonical form. */
 void grrl_experience_graph(const struct grrl_experience_state *state, struct grrl_graph *graph);
@@ -147,17 +173,18 @@ void grrl_experience_graph(const struct grrl_experience_state *state, struct grr
 /*
  * For each action of the state the closest experience: exact matches first, then properties dropped
  * one place after another from the last to the first, then sub-structures (either may be the
- * larger), fewest differing links and joints first, those that agree in all properties before those
- * that agree in none; ties go to the entry with more targets met, then to the lower index. All
- * links some mapping binds to the stored one count; an experience whose stored link no mapping
- * binds is no match, nor is what a search left undecided. Nothing is known of a state without a
- * canonical form.
+ * larger): the largest overlap first, which is the fewest links and joints that only one of the two
+ * has, then those that agree in all properties before those that agree in none; ties go to the
+ * entry with more targets met, then to the lower index, which is the older one as long as nothing
+ * was evicted. All links some mapping binds to the stored one count; an experience whose stored
+ * link no mapping binds is no match, nor is what a search left undecided. Nothing is known of a
+ * state without a canonical form.
  *
- * Cost: exact and relaxed states are found by hash, whatever the number of states. For
- * sub-structures the signatures of all states are compared (some nanoseconds each, less with an
- * index), then at most GRRL_RECALL_STATES states are searched, the closest first and of equally
- * close ones those with lower indices, budget steps each; none once every action has an entry that
- * only a closer state could replace.
+ * Cost: exact and relaxed states are found by hash, whatever the number of states. What could be a
+ * sub-structure is told by signatures: of all states, or with an index of those of the sizes next
+ * to the current one, some nanoseconds each. Then at most config->states of them are searched, the
+ * closest first and of equally close ones those with lower indices, config->budget steps each; none
+ * once every action has an entry that only a closer state could replace.
  */
 void grrl_experience_recall(const struct grrl_experience_store *store,
                             const struct grrl_graph *state, const struct grrl_recall_config *config,

@@ -123,6 +123,7 @@ struct grrl_perception_keyframe {
     struct grrl_vec2 point[GRRL_MAX_FEATURES];
     uint8_t weight[GRRL_MAX_FEATURES]; /* frames averaged, 0: not seen */
     bool at_rest;
+    bool examined; /* for outliers */
 };
 
 /* private: a body's pose in one keyframe, in units of one frame's noise */
@@ -141,11 +142,13 @@ struct grrl_perception {
     uint16_t slot_of_hash[4 * GRRL_MAX_FEATURES]; /* open addressing by id, slot + 1 */
     int32_t id[GRRL_MAX_FEATURES];
     struct grrl_vec2 last[GRRL_MAX_FEATURES];
+    struct grrl_vec2 before[GRRL_MAX_FEATURES]; /* the last, where it was seen */
     uint32_t last_frame[GRRL_MAX_FEATURES];
     uint8_t jumps[GRRL_MAX_FEATURES];
     uint8_t body_of[GRRL_MAX_FEATURES];
     uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
-    bool has_moved[GRRL_MAX_FEATURES];  /* at any time since the first keyframe */
+    float reach2_m2; /* features of one object lie closer, squared; at first sight */
+    bool has_moved[GRRL_MAX_FEATURES]; /* at any time since the first keyframe */
 
     /* private: keyframes */
     struct grrl_perception_window window;

@@ -40,4 +40,33 @@ static inline bool grrl_signature_within(const struct grrl_signature *part,
     return (fits & full) == full;
 }
 
+/*
+ * What longer paths tell of the shape, whatever the properties: three bits for how many chains of
+ * four joints there are by types, and for three joints at one link by types, full at seven; one bit
+ * for whether there is a chain of five or six joints by types, and for whether there are two.
+ */
+enum { GRRL_PATH_COUNTS = 2, GRRL_PATH_WORDS = 5 };
+
+struct grrl_paths {
+    /* private */
+    uint32_t word[GRRL_PATH_WORDS];
+};
+
+/* Cost: a step for each chain of up to six joints, at most some thousands; beyond, all is full. */
+void grrl_paths(const struct grrl_graph *graph, struct grrl_paths *paths);
+
+/* Whether a graph with the first could be a sub-structure of one with the second. False is
+ * certain. */
+static inline bool grrl_paths_within(const struct grrl_paths *part, const struct grrl_paths *whole)
+{
+    const uint32_t full = UINT32_C(0x88888888);
+    uint32_t fits = full;
+    uint32_t lacking = 0;
+    for (int i = 0; i < GRRL_PATH_COUNTS; i++)
+        fits &= (whole->word[i] | full) - part->word[i];
+    for (int i = GRRL_PATH_COUNTS; i < GRRL_PATH_WORDS; i++)
+        lacking |= part->word[i] & ~whole->word[i];
+    return (((fits & full) ^ full) | lacking) == 0;
+}
+
 #endif
