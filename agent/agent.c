@@ -58,7 +58,10 @@ static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t ut
     int64_t now = agent->config.observe ? utime : agent_now_us(agent);
     if (agent->plant_session_id != 0 && session_id != agent->plant_session_id) {
         if (now - agent->plant_heard_us < SILENCE_US) {
-            agent->counts.foreign++;
+            if (agent->counts.foreign++ == 0)
+                agent_note(agent, "another simulator or tracker sends here, too, and is ignored "
+                                  "while the known one is there: give each an LCM provider (port) "
+                                  "of its own");
             return false;
         }
         agent_note(agent, "the simulator or tracker was restarted, the trial is abandoned");
@@ -68,6 +71,7 @@ static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t ut
     }
     agent->plant_session_id = session_id;
     agent->plant_heard_us = now;
+    agent->heard_us = agent_now_us(agent);
     return true;
 }
 
@@ -104,6 +108,8 @@ static void on_push_status(const lcm_recv_buf_t *buffer, const char *channel, vo
         return;
     if (agent->config.observe || status.agent_session_id == agent->config.session_id)
         agent_take_status(agent, &status);
+    else if (status.state == GRRL_PUSH_STATUS_T_MOVING)
+        agent_meet_rival(agent);
 }
 
 static void on_decision(const lcm_recv_buf_t *buffer, const char *channel, void *user)
@@ -147,6 +153,7 @@ enum grrl_status grrl_agent_init(struct grrl_agent *agent, const struct grrl_age
     memset(agent, 0, sizeof *agent);
     agent->config = *config;
     agent->lcm = lcm;
+    agent->heard_us = agent_now_us(agent);
     grrl_wire_bind_model(&agent->model);
     grrl_wire_bind_points(&agent->points);
     enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, &config->memory);
@@ -167,6 +174,16 @@ void grrl_agent_tick(struct grrl_agent *agent)
 bool grrl_agent_finished(const struct grrl_agent *agent)
 {
     return agent->finished;
+}
+
+bool grrl_agent_gave_way(const struct grrl_agent *agent)
+{
+    return agent->gave_way;
+}
+
+int64_t grrl_agent_silence_us(const struct grrl_agent *agent)
+{
+    return agent_now_us(agent) - agent->heard_us;
 }
 
 void grrl_agent_close(struct grrl_agent *agent)

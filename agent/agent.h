@@ -73,9 +73,13 @@ struct grrl_agent {
     int64_t answered_us; /* when the last answer went out */
 
     int64_t plant_session_id; /* 0: none yet */
-    int64_t plant_heard_us;
+    int64_t plant_heard_us;   /* observing: by the clock of the messages */
+    int64_t heard_us;
     bool lock_step;
     bool finished;
+    bool gave_way;
+    bool rival_seen; /* and told */
+    bool blind;      /* nothing could be pushed at the last look, and that was told */
 
     grrl_trial_t trial; /* the newest taken in; revision 0: none */
     uint8_t stage;
@@ -105,6 +109,13 @@ void grrl_agent_tick(struct grrl_agent *agent);
 
 /* The supervisor has no further trial. */
 bool grrl_agent_finished(const struct grrl_agent *agent);
+
+/* The robot, which no supervisor watches, moves for another agent: what moved would be put down to
+ * the wrong push. This agent pushes and learns no more. */
+bool grrl_agent_gave_way(const struct grrl_agent *agent);
+
+/* Since the simulator or tracker was last heard of, or since the start. */
+int64_t grrl_agent_silence_us(const struct grrl_agent *agent);
 
 /* Abandons the trial under way and unsubscribes. */
 void grrl_agent_close(struct grrl_agent *agent);

@@ -20,6 +20,9 @@ void agent_take_status(struct grrl_agent *agent, const grrl_push_status_t *statu
 void agent_take_decision(struct grrl_agent *agent, const grrl_decision_t *decision);
 void agent_abandon(struct grrl_agent *agent);
 
+/* The robot moves for another agent. */
+void agent_meet_rival(struct grrl_agent *agent);
+
 /* agent_publish.c: messages going out. All are silent when observing. */
 void agent_make_model(struct grrl_agent *agent);
 void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *decision);

@@ -77,6 +77,15 @@ static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
     return true;
 }
 
+/* It looks again, perhaps at every frame: once is enough. */
+static void tell_blind(struct grrl_agent *agent, enum grrl_status status)
+{
+    if (!agent->blind)
+        agent_note(agent, status == GRRL_ERR_NONE ? "no link is seen that could be pushed"
+                                                  : grrl_status_text(status));
+    agent->blind = true;
+}
+
 static void choose(struct grrl_agent *agent)
 {
     struct grrl_decision decision;
@@ -91,10 +100,10 @@ static void choose(struct grrl_agent *agent)
                                   ? config->choose(config->context, &agent->learner, &decision)
                                   : grrl_learner_choose(&agent->learner, &decision);
     if (status != GRRL_OK) {
-        agent_note(agent, status == GRRL_ERR_NONE ? "no link is seen that could be pushed"
-                                                  : grrl_status_text(status));
+        tell_blind(agent, status);
         return;
     }
+    agent->blind = false;
     next_push(agent);
     agent_make_decision(agent, &decision);
     agent_event(agent, GRRL_AGENT_DECIDED);
@@ -148,6 +157,29 @@ void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
     }
     agent_answer(agent);
     agent->finished = agent->finished || trial->phase == GRRL_TRIAL_T_FINISHED;
+}
+
+void agent_meet_rival(struct grrl_agent *agent)
+{
+    bool alone = agent->stage != STAGE_NONE && agent->trial_id == 0;
+    if (!alone)
+        return; /* with a supervisor, the frames tell whose pushes they show */
+    agent_abandon(agent);
+    agent->gave_way = true;
+}
+
+/* Whether a frame shows another agent's pushes. Then it teaches nothing here, but this agent stays
+ * ready: when the other one is silent, the simulator turns to it. */
+static bool shows_rival(struct grrl_agent *agent, const grrl_points_t *points)
+{
+    int64_t session = points->agent_session_id;
+    if (agent->config.observe || session == 0 || session == agent->config.session_id)
+        return false;
+    if (!agent->rival_seen)
+        agent_note(agent, "another agent is obeyed, this one waits: stop one of the two, or give "
+                          "each an LCM provider (port) of its own");
+    agent->rival_seen = true;
+    return true;
 }
 
 void agent_take_status(struct grrl_agent *agent, const grrl_push_status_t *status)
@@ -211,7 +243,7 @@ static void settled(struct grrl_agent *agent)
 {
     enum grrl_status status = grrl_learner_perceive(&agent->learner);
     if (status != GRRL_OK)
-        agent_note(agent, grrl_status_text(status));
+        tell_blind(agent, status);
     agent_make_model(agent);
     agent->stage = STAGE_JUDGING;
     judge_if_told(agent);
@@ -238,6 +270,8 @@ static void watch(struct grrl_agent *agent, const grrl_points_t *points)
 
 void agent_take_frame(struct grrl_agent *agent, const grrl_points_t *points)
 {
+    if (agent->gave_way || shows_rival(agent, points))
+        return;
     if (points->trial_id == 0 && agent->stage == STAGE_NONE && agent->trial.revision == 0)
         begin_trial(agent, 0);
     if (agent->stage == STAGE_NONE || points->trial_id != agent->trial_id)

@@ -20,11 +20,11 @@ struct run {
 
 static void save(struct run *run)
 {
-    struct grrl_store_error error;
+    struct grrl_store_report report;
     if (run->options.store == NULL ||
-        grrl_store_file_save(run->options.store, &agent.learner, &error))
+        grrl_store_file_save(&grrl_file_calls_posix, run->options.store, &agent.learner, &report))
         return;
-    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", error.text);
+    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", report.text);
     run->failed = true;
 }
 
@@ -84,24 +84,27 @@ static void on_event(void *context, const struct grrl_agent_event *event)
 /* Until the trials are over, the log ends, a signal comes or LCM fails. */
 static void loop(struct run *run, lcm_t *lcm)
 {
-    const char *url = run->options.lcm_url;
-    const char *used = url != NULL ? url : getenv("LCM_DEFAULT_URL");
-    bool is_log = used != NULL && strncmp(used, "file://", 7) == 0;
+    struct grrl_process_watch watch = {.program = "grrl-agent",
+                                       .timeout_s = run->options.tracker_timeout_s,
+                                       .quiet = run->options.quiet};
+    bool from_log = grrl_process_is_log(run->options.lcm_url);
     while (!grrl_process_stopped() && !run->failed && !grrl_agent_finished(&agent)) {
         if (lcm_handle_timeout(lcm, GRRL_PROCESS_POLL_MS) < 0 && !grrl_process_stopped()) {
-            if (!is_log) {
+            if (!from_log) {
                 (void)fprintf(stderr, "grrl-agent: LCM fails to receive\n");
                 run->failed = true;
             }
             break;
         }
         grrl_agent_tick(&agent);
+        if (!from_log && !grrl_process_attended(&watch, &agent))
+            run->failed = true;
     }
 }
 
 static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
 {
-    struct grrl_store_error error;
+    struct grrl_store_report report;
     enum grrl_status status = grrl_agent_init(&agent, config, lcm);
     if (status != GRRL_OK) {
         (void)fprintf(stderr, "grrl-agent: %s\n", grrl_status_text(status));
@@ -109,10 +112,12 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
     }
     if (run->options.store == NULL)
         return true;
-    if (!grrl_store_file_load(run->options.store, &agent.learner, &error)) {
-        (void)fprintf(stderr, "grrl-agent: %s\n", error.text);
+    enum grrl_store_result result =
+        grrl_store_file_load(&grrl_file_calls_posix, run->options.store, &agent.learner, &report);
+    if (result != GRRL_STORE_LOADED) /* --quiet does not silence what was lost */
+        (void)fprintf(stderr, "grrl-agent: %s\n", report.text);
+    if (result == GRRL_STORE_REFUSED)
         return false;
-    }
     save(run); /* the same again: where it cannot be written, that shows before anything is learned
                 */
     return !run->failed;

@@ -24,6 +24,7 @@ enum option_id {
     OPT_Z,
     OPT_NOISE,
     OPT_OBSERVE,
+    OPT_TRACKER_TIMEOUT,
     OPT_LCM_URL,
     OPT_QUIET,
     OPT_EXPLAIN,
@@ -48,6 +49,8 @@ static const struct {
     {OPT_Z, "z", "X", "paper: width of the bounds of Interval Estimation (0.5)"},
     {OPT_NOISE, "noise", "MM", "standard deviation of a tracked point, millimetres (0.7)"},
     {OPT_OBSERVE, "observe", NULL, "learn from another agent's pushes, live or from a log"},
+    {OPT_TRACKER_TIMEOUT, "tracker-timeout", "S",
+     "give up when nothing is heard for S seconds (wait for ever)"},
     {OPT_LCM_URL, "lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0"},
     {OPT_QUIET, "quiet", NULL, "print errors only"},
     {OPT_EXPLAIN, "explain", NULL, "print a line for each decision: what and why"},
@@ -130,6 +133,18 @@ static bool parse_noise(const char *text, float *noise_m)
     return true;
 }
 
+static bool parse_timeout(const char *text, double *seconds)
+{
+    float parsed;
+    const char *right = "seconds, 0.1 to 1000000";
+    if (!parse_float("tracker-timeout", text, right, &parsed))
+        return false;
+    if (!(parsed >= 0.1f && parsed <= 1e6f))
+        return bad("tracker-timeout", text, right);
+    *seconds = (double)parsed;
+    return true;
+}
+
 static bool take(enum option_id id, const char *text, struct grrl_agent_options *options)
 {
     struct grrl_policy_config *policy = &options->learner.policy;
@@ -162,6 +177,8 @@ static bool take(enum option_id id, const char *text, struct grrl_agent_options 
     case OPT_OBSERVE:
         options->observe = true;
         return true;
+    case OPT_TRACKER_TIMEOUT:
+        return parse_timeout(text, &options->tracker_timeout_s);
     case OPT_LCM_URL:
         options->lcm_url = text;
         return true;

@@ -12,6 +12,7 @@ struct grrl_agent_options {
     const char *store;   /* NULL: experiences are not kept */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;
+    double tracker_timeout_s; /* 0: wait for ever */
     bool observe;
     bool quiet;
     bool explain;

@@ -5,9 +5,14 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "log_check.h"
+
+enum { HINT_PERIOD_US = 5000000 };
 
 static volatile sig_atomic_t stop;
 
@@ -31,12 +36,20 @@ bool grrl_process_stopped(void)
     return stop != 0;
 }
 
-int64_t grrl_process_now_us(void *context)
+static int64_t read_clock_us(clockid_t clock)
 {
     struct timespec now;
-    (void)context;
-    (void)clock_gettime(CLOCK_REALTIME, &now);
+    (void)clock_gettime(clock, &now);
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int64_t grrl_process_now_us(void *context)
+{
+    static int64_t offset_us;
+    (void)context;
+    if (offset_us == 0)
+        offset_us = read_clock_us(CLOCK_REALTIME) - read_clock_us(CLOCK_MONOTONIC);
+    return read_clock_us(CLOCK_MONOTONIC) + offset_us;
 }
 
 int64_t grrl_process_random_session(void)
@@ -53,8 +66,28 @@ int64_t grrl_process_random_session(void)
     return session != 0 ? session : 1;
 }
 
+/* The URL that LCM will use; NULL: its own default. */
+static const char *used_url(const char *url)
+{
+    return url != NULL ? url : getenv("LCM_DEFAULT_URL");
+}
+
+bool grrl_process_is_log(const char *url)
+{
+    char path[1];
+    const char *used = used_url(url);
+    return used != NULL && grrl_log_path(used, sizeof path, path);
+}
+
 lcm_t *grrl_process_open_lcm(const char *program, const char *url)
 {
+    char path[4096];
+    struct grrl_log_why why;
+    const char *used = used_url(url);
+    if (used != NULL && grrl_log_path(used, sizeof path, path) && !grrl_log_check(path, &why)) {
+        (void)fprintf(stderr, "%s: %s\n", program, why.text);
+        return NULL;
+    }
     lcm_t *lcm = lcm_create(url);
     if (lcm != NULL && lcm_get_fileno(lcm) >= 0)
         return lcm;
@@ -66,4 +99,32 @@ lcm_t *grrl_process_open_lcm(const char *program, const char *url)
     if (lcm != NULL)
         lcm_destroy(lcm);
     return NULL;
+}
+
+bool grrl_process_attended(struct grrl_process_watch *watch, const struct grrl_agent *agent)
+{
+    int64_t silence_us = grrl_agent_silence_us(agent);
+    if (grrl_agent_gave_way(agent)) {
+        (void)fprintf(stderr,
+                      "%s: the robot moves for another agent: stop one of the two, then start this "
+                      "one again\n",
+                      watch->program);
+        return false;
+    }
+    if (watch->timeout_s > 0.0 && (double)silence_us >= watch->timeout_s * 1e6) {
+        (void)fprintf(stderr, "%s: no simulator or tracker for %g s, giving up\n", watch->program,
+                      watch->timeout_s);
+        return false;
+    }
+    if (silence_us < HINT_PERIOD_US)
+        watch->hinted_us = 0;
+    if (silence_us - watch->hinted_us >= HINT_PERIOD_US) {
+        watch->hinted_us = silence_us;
+        if (!watch->quiet)
+            (void)fprintf(stderr,
+                          "%s: waiting for points on the same LCM provider: start grrl-sim or your "
+                          "tracker\n",
+                          watch->program);
+    }
+    return true;
 }

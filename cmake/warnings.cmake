@@ -6,7 +6,11 @@ function(grrl_configure target)
     target_compile_options(${target} PRIVATE ${common} -ffp-contract=off
         $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes -Wstrict-prototypes>
         $<$<BOOL:${GRRL_WERROR}>:-Werror>)
-    if(GRRL_SANITIZE)
+    if(GRRL_FUZZ)
+        target_compile_options(${target} PRIVATE -fno-sanitize-recover=all -fno-omit-frame-pointer
+            -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow)
+        target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+    elseif(GRRL_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=address,undefined
             -fno-sanitize-recover=all -fno-omit-frame-pointer)
         target_link_options(${target} PUBLIC -fsanitize=address,undefined)

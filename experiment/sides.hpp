@@ -76,7 +76,8 @@ public:
 
     WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_trial);
 
-    void tick() { node_->tick(); }
+    /* Throws std::runtime_error when the run cannot go on. */
+    void tick();
     bool finished() const { return node_->finished(); }
     int64_t agent_silent_us() const { return node_->agent_silent_us(); }
     const grrl_sim::Node &node() const { return *node_; }

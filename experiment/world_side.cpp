@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include "sides.hpp"
 #include "truth.hpp"
@@ -30,6 +31,13 @@ WorldSide::WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_tri
         on_message(channel, data, size);
     };
     node_ = std::make_unique<grrl_sim::Node>(lcm, std::move(config));
+}
+
+void WorldSide::tick()
+{
+    node_->tick();
+    if (node_->agent_is_blind())
+        throw std::runtime_error("the agent finds nothing to push: less noise, please");
 }
 
 void WorldSide::on_message(const char *channel, const void *data, uint32_t size)

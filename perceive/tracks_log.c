@@ -6,6 +6,7 @@
 
 #include <lcm/lcm.h>
 
+#include "log_check.h"
 #include "wire.h"
 
 /* Where a log's messages go: a recording that grows. */
@@ -128,7 +129,12 @@ bool grrl_tracks_read_log(const char *path, int32_t trial, struct grrl_tracks *t
                           struct grrl_tracks_error *error)
 {
     struct collector to = {.tracks = tracks, .wanted = trial};
+    struct grrl_log_why log_why;
     *tracks = (struct grrl_tracks){0};
+    if (!grrl_log_check(path, &log_why)) {
+        (void)snprintf(error->text, sizeof error->text, "%s", log_why.text);
+        return false;
+    }
     lcm_eventlog_t *log = lcm_eventlog_create(path, "r");
     if (log == NULL) {
         (void)snprintf(error->text, sizeof error->text, "%.200s: %s", path, strerror(errno));

@@ -21,10 +21,14 @@ constexpr int64_t hint_period_us = 5000000;
 
 volatile std::sig_atomic_t stop = 0;
 
+/* The time of day at the start, and what has passed since: a clock that is set meanwhile must not
+ * change what is due. */
 int64_t now_us()
 {
     using namespace std::chrono;
-    return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
+    static const auto offset =
+        system_clock::now().time_since_epoch() - steady_clock::now().time_since_epoch();
+    return duration_cast<microseconds>(steady_clock::now().time_since_epoch() + offset).count();
 }
 
 int64_t random_session()
@@ -179,6 +183,11 @@ bool loop(Node &node, lcm_t *lcm, const Options &options, const Results &results
         }
         if (!wait_for_agent(node, options, hint_us))
             return false;
+        if (node.agent_is_blind()) {
+            (void)std::fprintf(stderr, "grrl-sim: the agent finds nothing to push, giving up: too "
+                                       "few points (--dropout) or too much noise (--noise)?\n");
+            return false;
+        }
     }
     return true;
 }

@@ -13,6 +13,7 @@ namespace
 
 constexpr int rest_frames_to_settle = 10;
 constexpr int64_t silence_us = 1000000;
+constexpr int most_looks = 10; /* at a scene in which the agent finds nothing to push */
 
 /* The n-th trial of a seed has its own object pose, noise and friction. */
 uint64_t trial_seed(uint64_t seed, int32_t trial_id)
@@ -106,7 +107,8 @@ bool Node::known_agent(int64_t session_id)
     int64_t now = config_.now_us();
     if (agent_session_id_ != 0 && session_id != agent_session_id_) {
         if (now - agent_heard_us_ < silence_us) {
-            foreign_++;
+            if (foreign_++ == 0)
+                note("another agent answers, too, and is ignored while the first one is there");
             return false;
         }
         note("the agent was restarted, its trial is aborted");
@@ -177,6 +179,7 @@ void Node::begin_trial()
     trial_id_++;
     pushes_ = 0;
     rest_frames_ = 0;
+    looks_ = 0;
     ack_cmd_seq_ = 0;
     command_ = {};
     decision_ = {};
@@ -251,8 +254,26 @@ void Node::obey(const grrl_push_command_t &command)
         } else if (command.kind == GRRL_PUSH_COMMAND_T_PUSH) {
             command_ = command;
             push_if_complete();
+        } else if (!config_.real_time && trial_.judged_cmd_seq == ack_cmd_seq_) {
+            look_again();
         }
     }
+}
+
+/* The agent has all it waited for and yet no push: it sees nothing it could push. In further frames
+ * it perhaps does; in real time they come anyway. */
+void Node::look_again()
+{
+    if (++looks_ > most_looks)
+        return;
+    stage_ = Stage::RESTING;
+    rest_frames_ = 0;
+    advance();
+}
+
+bool Node::agent_is_blind() const
+{
+    return looks_ > most_looks;
 }
 
 /* A push needs its decision, too, so that every log tells why; and the supervisor's word. */
@@ -268,6 +289,7 @@ void Node::start_push()
 {
     ack_cmd_seq_ = command_.cmd_seq;
     pushes_++;
+    looks_ = 0;
     rest_frames_ = 0;
     std::string problem = world_->begin_push(push_of(command_));
     if (problem.empty()) {
@@ -325,6 +347,7 @@ void Node::send_frame()
     points.seq = ++seq_;
     points.trial_id = trial_id_;
     points.ack_cmd_seq = ack_cmd_seq_;
+    points.agent_session_id = agent_session_id_;
     world_->observe(frame_);
     points.n_points = 0;
     for (const TrackedFeature &feature : frame_.features) {

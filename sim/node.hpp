@@ -66,6 +66,9 @@ public:
     int64_t agent_silent_us() const { return config_.now_us() - agent_heard_us_; }
     bool agent_known() const { return agent_session_id_ != 0; }
 
+    /* Lock-step: it finds nothing to push, however often it looks; the run cannot go on. */
+    bool agent_is_blind() const;
+
     int64_t frames() const { return seq_; }
 
     /* The trial's truth, to measure with; nothing for an agent. */
@@ -102,6 +105,7 @@ private:
     void push_if_complete();
     void start_push();
     void advance();
+    void look_again();
     int8_t move_on();
     void send_frame();
     void set_push_state(int8_t state, int8_t reason);
@@ -126,6 +130,7 @@ private:
     int counted_trials_ = 0;
     int pushes_ = 0;
     int rest_frames_ = 0;
+    int looks_ = 0; /* further ones since the last push */
     int32_t ack_cmd_seq_ = 0;
     int64_t seq_ = 0;
 

@@ -204,6 +204,30 @@ static void a_file_cut_anywhere_leaves_an_empty_store(void **state)
     }
 }
 
+static void a_torn_file_gives_what_was_whole(void **state)
+{
+    (void)state;
+    size_t whole = file.size;
+    uint32_t total = original.store.n_experiences;
+    for (size_t size = 0; size < whole; ++size) {
+        uint32_t lost;
+        file.size = size;
+        file.at = 0;
+        const struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+        assert_int_equal(grrl_experience_load_torn(&copy.store, &io, &lost), GRRL_ERR_IO);
+        check_store(&copy.store);
+        size_t records = size + total * (size_t)EXPERIENCE > whole
+                             ? (size + total * (size_t)EXPERIENCE - whole) / EXPERIENCE
+                             : 0;
+        assert_int_equal(copy.store.n_experiences, records);
+        assert_int_equal(lost, size < HEADER + CRC ? 0 : total - records);
+        for (uint32_t i = 0; i < records; ++i) {
+            assert_memory_equal(&copy.experiences[i].q, &original.experiences[i].q,
+                                sizeof(struct grrl_q));
+        }
+    }
+}
+
 static void a_failing_callback_is_told(void **state)
 {
     (void)state;
@@ -435,6 +459,7 @@ int main(void)
         cmocka_unit_test_setup(a_loaded_store_goes_on_like_the_first, set_up),
         cmocka_unit_test_setup(an_empty_store_is_a_file_too, set_up),
         cmocka_unit_test_setup(a_file_cut_anywhere_leaves_an_empty_store, set_up),
+        cmocka_unit_test_setup(a_torn_file_gives_what_was_whole, set_up),
         cmocka_unit_test_setup(a_failing_callback_is_told, set_up),
         cmocka_unit_test_setup(no_damaged_byte_goes_unseen, set_up),
         cmocka_unit_test_setup(the_crc_is_the_common_one, set_up),

@@ -110,7 +110,8 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
     return GRRL_OK;
 }
 
-enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_experience_io *io)
+enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
+                                      const struct grrl_experience_io *io, uint32_t *lost)
 {
     struct grrl_record record = {.io = io};
     uint32_t n = 0;
@@ -120,11 +121,23 @@ enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_
     for (uint32_t i = 0; i < n && status == GRRL_OK; ++i) {
         status = read_case(base, &record, clock);
     }
-    if (status != GRRL_OK) {
+    *lost = 0;
+    if (status != GRRL_OK && status != GRRL_ERR_IO) {
         grrl_cases_clear(base);
         return status;
     }
+    *lost = n - base->n;
     base->high_water = base->n;
     base->clock = clock;
-    return GRRL_OK;
+    return status;
+}
+
+enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_experience_io *io)
+{
+    uint32_t lost;
+    enum grrl_status status = grrl_cases_load_torn(base, io, &lost);
+    if (status == GRRL_ERR_IO) {
+        grrl_cases_clear(base);
+    }
+    return status;
 }

@@ -230,7 +230,7 @@ static uint32_t *reference_to(struct grrl_experience_store *store, uint32_t stat
     return reference;
 }
 
-static void remove_state(struct grrl_experience_store *store, uint32_t state)
+void grrl_experience_remove_state(struct grrl_experience_store *store, uint32_t state)
 {
     uint32_t last = --store->n_states;
     unlink_state(store, state);
@@ -257,7 +257,7 @@ static void remove_experience(struct grrl_experience_store *store, uint32_t inde
     }
     ++store->evictions;
     if (--store->states[state].experiences == 0) {
-        remove_state(store, state);
+        grrl_experience_remove_state(store, state);
     }
 }
 

@@ -194,32 +194,56 @@ static enum grrl_status read_experience(struct grrl_experience_store *store,
 }
 
 static enum grrl_status read_all(struct grrl_experience_store *store,
-                                 const struct grrl_experience_io *io)
+                                 const struct grrl_experience_io *io, struct header *header)
 {
     struct grrl_record record = {.io = io};
-    struct header header;
-    enum grrl_status status = read_header(store, &record, &header);
-    for (uint32_t i = 0; status == GRRL_OK && i < header.n_states; ++i) {
+    enum grrl_status status = read_header(store, &record, header);
+    for (uint32_t i = 0; status == GRRL_OK && i < header->n_states; ++i) {
         status = read_state(store, &record);
     }
-    for (uint32_t i = 0; status == GRRL_OK && i < header.n_experiences; ++i) {
-        status = read_experience(store, &record, header.clock);
+    for (uint32_t i = 0; status == GRRL_OK && i < header->n_experiences; ++i) {
+        status = read_experience(store, &record, header->clock);
     }
     for (uint32_t i = 0; status == GRRL_OK && i < store->n_states; ++i) {
         status = store->states[i].experiences > 0 ? GRRL_OK : GRRL_ERR_CORRUPT;
     }
-    if (status == GRRL_OK) {
-        store->clock = header.clock;
+    return status;
+}
+
+static void drop_unused_states(struct grrl_experience_store *store)
+{
+    for (uint32_t state = store->n_states; state-- > 0;) {
+        if (store->states[state].experiences == 0) {
+            grrl_experience_remove_state(store, state);
+        }
     }
+}
+
+enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
+                                           const struct grrl_experience_io *io, uint32_t *lost)
+{
+    struct header header = {0};
+    grrl_experience_clear(store);
+    enum grrl_status status = read_all(store, io, &header);
+    *lost = 0;
+    if (status != GRRL_OK && status != GRRL_ERR_IO) {
+        grrl_experience_clear(store);
+        return status;
+    }
+    if (status == GRRL_ERR_IO) {
+        *lost = header.n_experiences - store->n_experiences;
+        drop_unused_states(store);
+    }
+    store->clock = header.clock;
     return status;
 }
 
 enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
                                       const struct grrl_experience_io *io)
 {
-    grrl_experience_clear(store);
-    enum grrl_status status = read_all(store, io);
-    if (status != GRRL_OK) {
+    uint32_t lost;
+    enum grrl_status status = grrl_experience_load_torn(store, io, &lost);
+    if (status == GRRL_ERR_IO) {
         grrl_experience_clear(store);
     }
     return status;

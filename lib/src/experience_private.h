@@ -54,6 +54,9 @@ uint32_t grrl_experience_add_state(struct grrl_experience_store *store,
 uint32_t grrl_experience_add(struct grrl_experience_store *store, uint32_t state, uint8_t link,
                              uint8_t direction);
 
+/* Removes a state without experiences; the last state moves into the gap. */
+void grrl_experience_remove_state(struct grrl_experience_store *store, uint32_t state);
+
 /* --- the index (experience_index.c) --- */
 
 /* Empties an index, enters a state, takes one out. */

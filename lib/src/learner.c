@@ -284,17 +284,35 @@ enum grrl_status grrl_learner_save(const struct grrl_learner *learner,
     return status == GRRL_OK ? grrl_cases_save(&learner->cases, io) : status;
 }
 
+static void forget(struct grrl_learner *learner)
+{
+    grrl_experience_clear(&learner->store);
+    grrl_cases_clear(&learner->cases);
+}
+
+enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
+                                        const struct grrl_experience_io *io, uint32_t *lost)
+{
+    uint32_t lost_cases = 0;
+    grrl_cases_clear(&learner->cases);
+    enum grrl_status status = grrl_experience_load_torn(&learner->store, io, lost);
+    if (status == GRRL_OK) {
+        status = grrl_cases_load_torn(&learner->cases, io, &lost_cases);
+    }
+    *lost += lost_cases;
+    if (status != GRRL_OK && status != GRRL_ERR_IO) {
+        forget(learner);
+    }
+    return status;
+}
+
 enum grrl_status grrl_learner_load(struct grrl_learner *learner,
                                    const struct grrl_experience_io *io)
 {
-    grrl_cases_clear(&learner->cases);
-    enum grrl_status status = grrl_experience_load(&learner->store, io);
-    if (status != GRRL_OK) {
-        return status;
-    }
-    status = grrl_cases_load(&learner->cases, io);
-    if (status != GRRL_OK) {
-        grrl_experience_clear(&learner->store);
+    uint32_t lost;
+    enum grrl_status status = grrl_learner_load_torn(learner, io, &lost);
+    if (status == GRRL_ERR_IO) {
+        forget(learner);
     }
     return status;
 }

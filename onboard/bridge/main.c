@@ -157,14 +157,17 @@ static void on_event(void *context, const struct grrl_agent_event *event)
 }
 
 /* Until the trials are over, a signal comes, or LCM or the line fails. */
-static bool loop(lcm_t *lcm)
+static bool loop(const struct run *run, lcm_t *lcm)
 {
+    struct grrl_process_watch watch = {.program = "grrl-bridge", .quiet = run->quiet};
     while (!grrl_process_stopped() && !line.failed && !grrl_agent_finished(&agent)) {
         if (lcm_handle_timeout(lcm, GRRL_PROCESS_POLL_MS) < 0 && !grrl_process_stopped()) {
             (void)fprintf(stderr, "grrl-bridge: LCM fails to receive\n");
             return false;
         }
         grrl_agent_tick(&agent);
+        if (!grrl_process_attended(&watch, &agent))
+            return false;
     }
     return !line.failed;
 }
@@ -203,7 +206,7 @@ static bool run_bridge(struct run *run, lcm_t *lcm)
             (void)fprintf(stderr, "grrl-bridge: %s\n", grrl_status_text(status));
         return false;
     }
-    bool fine = loop(lcm);
+    bool fine = loop(run, lcm);
     grrl_agent_close(&agent);
     struct bridge_result result;
     fine = fine && bridge_learner_close(&result);

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Wrong options end with 2 and a message, damaged stores with 1 and stay as they are.
+# Wrong options end with 2 and a message, what is no store with 1 and stays as it is; a damaged store
+# is set aside.
 . "$(dirname "$0")/common.sh"
 URL='udpm://239.255.76.67:7728?ttl=0'
 
@@ -25,6 +26,8 @@ refused 2 "$AGENT" --experiences 0
 refused 2 "$AGENT" --experiences 7000000
 refused 2 "$AGENT" --store
 refused 2 "$AGENT" --quiet --explain
+refused 2 "$AGENT" --tracker-timeout 0
+refused 2 "$AGENT" --tracker-timeout soon
 refused 2 "$AGENT" extra
 refused 2 "$SIM"
 refused 2 "$SIM" --object RXR
@@ -47,24 +50,40 @@ for program in "$AGENT" "$SIM"; do
 done
 
 "$HELPERS/memq_run" RR 3 1 good.store >memq.txt 2>&1 || fail "memq_run ended with $?"
-damaged() {
+# kept FILE: another program's file, or of another version: refused and left alone
+kept() {
     cp "$1" before.store
     refused 1 "$AGENT" --lcm-url "$URL" --store "$1"
     same before.store "$1"
 }
+# set_aside FILE: a damaged store is kept under another name, and the agent starts
+set_aside() {
+    cp "$1" before.store
+    timeout 20 "$AGENT" --lcm-url "$URL" --store "$1" --tracker-timeout 0.3 --quiet >out.txt 2>err.txt
+    grep -q "it is now $1.damaged" err.txt || fail "no word of $1.damaged"
+    same before.store "$1.damaged"
+    timeout 20 "$AGENT" --lcm-url "$URL" --store "$1" --tracker-timeout 0.3 --quiet >out.txt 2>err.txt
+    grep -q damaged err.txt && fail "$1 is damaged again"
+}
 head -c 20 good.store >short.store
-damaged short.store
+set_aside short.store
+head -c -7 good.store >torn.store
+set_aside torn.store
+cp before.store torn.store # a second time: the first one stays
+timeout 20 "$AGENT" --lcm-url "$URL" --store torn.store --tracker-timeout 0.3 >out.txt 2>err.txt
+grep -q 'at least 1 are lost; it is now torn.store.damaged.2' err.txt || fail "no torn.store.damaged.2"
+same before.store torn.store.damaged.2
 cp good.store flipped.store
 printf '\377' | dd of=flipped.store bs=1 seek=$(($(stat -c %s good.store) / 2)) conv=notrunc 2>/dev/null
 cmp -s good.store flipped.store && printf '\000' |
     dd of=flipped.store bs=1 seek=$(($(stat -c %s good.store) / 2)) conv=notrunc 2>/dev/null
-damaged flipped.store
-echo "not a store at all, but a letter" >letter.store
-damaged letter.store
+set_aside flipped.store
 cat good.store good.store >long.store
-damaged long.store
+set_aside long.store
 : >empty.store
-damaged empty.store
+set_aside empty.store
+echo "not a store at all, but a letter" >letter.store
+kept letter.store
 refused 1 "$AGENT" --lcm-url "$URL" --store good.store --experiences 1
 
 # A signal is a clean end.

@@ -16,3 +16,12 @@ same live.store log.store
 head -c 100000 run.lcm >cut.lcm
 timeout 60 "$AGENT" --observe --lcm-url "file://cut.lcm?speed=0" --store cut.store >cut.txt 2>&1 ||
     fail "the observer of half a log ended with $?"
+
+# A length that no memory can hold, which LCM's own reader would believe.
+{
+    cat run.lcm
+    printf '\355\241\332\001\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0\1\0\0\0\13\177\377\377\377GRRL_POINTS'
+} >huge.lcm
+timeout 60 "$AGENT" --observe --lcm-url "file://huge.lcm?speed=0" >huge.txt 2>&1
+[ $? = 1 ] || fail "the observer of a log with a huge message did not end with 1"
+grep -q 'huge.lcm: byte .*: a message of 2147483647 bytes' huge.txt || fail "it does not say why"

@@ -66,8 +66,8 @@ int main(int argc, char **argv)
                           static_cast<double>(now_us() - start) * 1e-6);
     }
     grrl_agent_close(agent.get());
-    grrl_store_error error;
-    bool saved = grrl_store_file_save(argv[4], &agent->learner, &error);
+    grrl_store_report report;
+    bool saved = grrl_store_file_save(&grrl_file_calls_posix, argv[4], &agent->learner, &report);
     lcm_destroy(lcm);
     return saved ? 0 : 1;
 }

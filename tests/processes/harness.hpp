@@ -1,15 +1,20 @@
-/* harness.hpp: agent and simulator in one process over memq://, on a clock of the test. */
+/* harness.hpp: agents and simulators in one process, each side on a memq:// of its own with a bus
+ * between that may be a bad one, on a clock of the test. */
 #ifndef GRRL_TESTS_HARNESS_HPP
 #define GRRL_TESTS_HARNESS_HPP
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstdarg>
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "bad_bus.hpp"
 #include "node.hpp"
 
 /* A struct and a function of the library share the name grrl_canonical: fine in C. */
@@ -47,6 +52,10 @@ struct Outcome {
     int64_t agent_foreign = 0;
     int64_t agent_rejected = 0;
     int64_t sim_rejected = 0;
+    bad_bus::Counts bus;
+    std::string notes;     /* of all agents and simulators */
+    int rival_lessons = 0; /* of the second agent */
+    bool blind = false;    /* the simulator gave up */
 };
 
 struct Setup {
@@ -59,6 +68,14 @@ struct Setup {
     bool forged_messages = false; /* foreign and malformed ones come between */
     size_t restart_agent_at = 0;  /* once so many pushes were commanded; 0: never */
     size_t restart_node_at = 0;
+    size_t freeze_agent_at = 0; /* for freeze_us */
+    size_t freeze_node_at = 0;
+    int64_t freeze_us = 3000000;
+    size_t second_agent_at = 0; /* joins; 1: with the first push */
+    size_t second_node_at = 0;
+    size_t stop_agent_at = 0; /* the first one, for good */
+    double dropout = 0.0;     /* of tracked points */
+    bad_bus::Faults faults;
     enum grrl_status (*choose)(void *, grrl_learner *, grrl_decision *) = nullptr;
 };
 
@@ -77,78 +94,135 @@ inline int append(void *context, const void *bytes, size_t size)
     return 0;
 }
 
+/* An agent with its memory. */
+struct AgentHost {
+    class Run *run = nullptr;
+    grrl_agent agent;
+    std::vector<grrl_case> cases;
+    std::vector<grrl_experience_state> states;
+    std::vector<grrl_experience> experiences;
+};
+
 class Run
 {
 public:
-    explicit Run(const Setup &setup) : setup_(setup), lcm_(lcm_create("memq://"))
+    explicit Run(const Setup &setup)
+        : setup_(setup), lcm_(lcm_create("memq://")), agent_lcm_(lcm_create("memq://"))
     {
         assert_non_null(lcm_);
+        assert_non_null(agent_lcm_);
         clock_us = 1000000;
         grrl_random_init(&random_, 99, 0);
-        start_agent();
-        start_node();
+        bus_ = std::make_unique<bad_bus::BadBus>(lcm_, agent_lcm_, setup.faults);
+        agent_ = start_agent();
+        node_ = start_node();
     }
     ~Run()
     {
-        grrl_agent_close(agent_.get());
+        stop(agent_);
+        stop(rival_);
         node_.reset();
+        rival_node_.reset();
+        bus_.reset();
         lcm_destroy(lcm_);
+        lcm_destroy(agent_lcm_);
     }
 
     Outcome finish()
     {
         int idle = 0;
-        for (int64_t step = 0; !node_->finished(); step++) {
+        for (int64_t step = 0; !node_->finished() && !node_->agent_is_blind(); step++) {
             assert_true(step < 5000000);
-            idle = lcm_handle_timeout(lcm_, 0) > 0 ? 0 : idle + 1;
+            idle = handle() ? 0 : idle + 1;
             /* Time passes only when there is nothing to do: the machine is infinitely fast. */
             if (idle > 0)
                 clock_us += 5000;
-            node_->tick();
-            grrl_agent_tick(agent_.get());
+            tick();
             if (step % 7 == 0)
                 disturb();
             restart();
         }
+        AgentHost *last = agent_ != nullptr ? agent_.get() : rival_.get();
         grrl_experience_io io = {&outcome_.experiences, append, nullptr};
-        assert_int_equal(grrl_learner_save(&agent_->learner, &io), GRRL_OK);
-        outcome_.agent_repeated = agent_->counts.repeated;
-        outcome_.agent_foreign = agent_->counts.foreign;
-        outcome_.agent_rejected = agent_->counts.rejected;
+        assert_int_equal(grrl_learner_save(&last->agent.learner, &io), GRRL_OK);
+        outcome_.agent_repeated = last->agent.counts.repeated;
+        outcome_.agent_foreign = last->agent.counts.foreign;
+        outcome_.agent_rejected = last->agent.counts.rejected;
         outcome_.sim_rejected = node_->rejected();
+        outcome_.bus = bus_->counts();
+        outcome_.blind = node_->agent_is_blind();
         return outcome_;
     }
 
     const std::vector<Message> &messages() const { return seen_; }
 
 private:
-    void start_agent()
+    /* What a push is known by everywhere. */
+    struct Push {
+        int64_t agent_session;
+        int32_t trial_id;
+        int32_t cmd_seq;
+        bool operator<(const Push &o) const
+        {
+            return std::tie(agent_session, trial_id, cmd_seq) <
+                   std::tie(o.agent_session, o.trial_id, o.cmd_seq);
+        }
+    };
+
+    std::unique_ptr<AgentHost> start_agent()
     {
-        agent_ = std::make_unique<grrl_agent>();
-        cases_.resize(capacity);
-        states_.resize(capacity);
-        experiences_.resize(capacity);
+        auto host = std::make_unique<AgentHost>();
+        host->run = this;
+        host->cases.resize(capacity);
+        host->states.resize(capacity);
+        host->experiences.resize(capacity);
         grrl_agent_config config{};
         grrl_learner_config_default(&config.learner);
         config.learner.seed = setup_.seed;
-        config.session_id = agent_session_;
+        config.session_id = agent_session_++;
         config.now_us = agent_clock;
+        config.on_event = on_event;
+        config.context = host.get();
         config.choose = setup_.choose;
-        config.memory = {cases_.data(),       capacity, states_.data(), capacity,
-                         experiences_.data(), capacity};
-        assert_int_equal(grrl_agent_init(agent_.get(), &config, lcm_), GRRL_OK);
+        config.memory = {host->cases.data(),       capacity, host->states.data(), capacity,
+                         host->experiences.data(), capacity};
+        assert_int_equal(grrl_agent_init(&host->agent, &config, agent_lcm_), GRRL_OK);
+        return host;
     }
 
-    void start_node()
+    static void stop(std::unique_ptr<AgentHost> &host)
+    {
+        if (host != nullptr)
+            grrl_agent_close(&host->agent);
+        host.reset();
+    }
+
+    static void on_event(void *context, const grrl_agent_event *event)
+    {
+        auto *host = static_cast<AgentHost *>(context);
+        Run *run = host->run;
+        if (event->kind == GRRL_AGENT_NOTE)
+            run->outcome_.notes += std::string(event->text) + "\n";
+        if (event->kind != GRRL_AGENT_LEARNED)
+            return;
+        /* No reward without the own action, carried out: whatever the bus does. */
+        Push push = {host->agent.config.session_id, event->trial_id, event->pushes};
+        assert_int_equal(run->carried_out_.count(push), 1);
+        run->outcome_.rival_lessons += host == run->rival_.get();
+    }
+
+    std::unique_ptr<Node> start_node()
     {
         NodeConfig config;
         config.object = *object_from_text(setup_.object).value;
+        config.world.tracker.dropout_probability = setup_.dropout;
         config.seed = setup_.seed;
         config.trials = setup_.trials;
         config.cap = setup_.cap;
         config.real_time = setup_.real_time;
-        config.session_id = sim_session_;
+        config.session_id = sim_session_++;
         config.now_us = [] { return clock_us; };
+        config.on_note = [this](const std::string &text) { outcome_.notes += text + "\n"; };
         config.on_trial = [this](const TrialResult &r) {
             if (r.outcome == GRRL_TRIAL_T_ABORTED)
                 outcome_.aborted++;
@@ -158,18 +232,52 @@ private:
         config.on_message = [this](const char *channel, const void *data, uint32_t size) {
             take(channel, data, size);
         };
-        node_ = std::make_unique<Node>(lcm_, std::move(config));
+        return std::make_unique<Node>(lcm_, std::move(config));
+    }
+
+    bool frozen(size_t at) const
+    {
+        return at > 0 && outcome_.pushes.size() >= at && clock_us < frozen_until_us_;
+    }
+
+    /* Whether there was anything to do. */
+    bool handle()
+    {
+        bool any = false;
+        if (!frozen(setup_.freeze_node_at))
+            any = lcm_handle_timeout(lcm_, 0) > 0;
+        if (!frozen(setup_.freeze_agent_at))
+            any = lcm_handle_timeout(agent_lcm_, 0) > 0 || any;
+        return any;
+    }
+
+    void tick()
+    {
+        bus_->tick(clock_us);
+        if (!frozen(setup_.freeze_node_at))
+            node_->tick();
+        if (rival_node_ != nullptr)
+            rival_node_->tick();
+        if (agent_ != nullptr && !frozen(setup_.freeze_agent_at))
+            grrl_agent_tick(&agent_->agent);
+        if (rival_ != nullptr)
+            grrl_agent_tick(&rival_->agent);
     }
 
     void take(const char *channel, const void *data, uint32_t size)
     {
         const auto *bytes = static_cast<const uint8_t *>(data);
         seen_.push_back({channel, {bytes, bytes + size}});
-        grrl_push_command_t c;
         grrl_wire_why why;
+        grrl_push_status_t s;
+        if (seen_.back().channel == GRRL_CHANNEL_PUSH_STATUS &&
+            grrl_wire_decode_push_status(data, size, &s, &why))
+            carried_out_.insert({s.agent_session_id, s.trial_id, s.cmd_seq});
+        grrl_push_command_t c;
         if (seen_.back().channel != GRRL_CHANNEL_PUSH_COMMAND ||
             !grrl_wire_decode_push_command(data, size, &c, &why) ||
-            c.kind != GRRL_PUSH_COMMAND_T_PUSH || c.session_id != agent_session_)
+            c.kind != GRRL_PUSH_COMMAND_T_PUSH || agent_ == nullptr ||
+            c.session_id != agent_->agent.config.session_id)
             return;
         std::vector<float> push = {static_cast<float>(c.trial_id),
                                    static_cast<float>(c.cmd_seq),
@@ -184,28 +292,48 @@ private:
             outcome_.pushes.push_back(push);
     }
 
+    /* To whom the message was. */
     void send(const Message &message)
     {
-        assert_int_equal(lcm_publish(lcm_, message.channel.c_str(), message.data.data(),
+        bool to_agent = message.channel == GRRL_CHANNEL_POINTS ||
+                        message.channel == GRRL_CHANNEL_TRIAL ||
+                        message.channel == GRRL_CHANNEL_PUSH_STATUS;
+        assert_int_equal(lcm_publish(to_agent ? agent_lcm_ : lcm_, message.channel.c_str(),
+                                     message.data.data(),
                                      static_cast<unsigned>(message.data.size())),
                          0);
+    }
+
+    /* Whether it is time, once. */
+    bool reached(size_t &at)
+    {
+        if (at == 0 || outcome_.pushes.size() < at)
+            return false;
+        at = 0;
+        return true;
     }
 
     /* As kill -9 and a fresh start: the experiences of the agent are gone, too. */
     void restart()
     {
-        if (setup_.restart_agent_at > 0 && outcome_.pushes.size() >= setup_.restart_agent_at) {
-            setup_.restart_agent_at = 0;
-            grrl_agent_close(agent_.get());
-            agent_session_++;
-            start_agent();
+        if (frozen_until_us_ == 0 &&
+            outcome_.pushes.size() >= std::max<size_t>(1, setup_.freeze_agent_at) &&
+            outcome_.pushes.size() >= setup_.freeze_node_at)
+            frozen_until_us_ = clock_us + setup_.freeze_us;
+        if (reached(setup_.restart_agent_at)) {
+            stop(agent_);
+            agent_ = start_agent();
         }
-        if (setup_.restart_node_at > 0 && outcome_.pushes.size() >= setup_.restart_node_at) {
-            setup_.restart_node_at = 0;
+        if (reached(setup_.restart_node_at)) {
             node_.reset();
-            sim_session_++;
-            start_node();
+            node_ = start_node();
         }
+        if (reached(setup_.second_agent_at))
+            rival_ = start_agent();
+        if (reached(setup_.second_node_at))
+            rival_node_ = start_node();
+        if (reached(setup_.stop_agent_at))
+            stop(agent_);
     }
 
     void disturb()
@@ -217,9 +345,10 @@ private:
         if (setup_.forged_messages) {
             Message forged =
                 seen_[grrl_random_below(&random_, static_cast<uint32_t>(seen_.size()))];
-            if (grrl_random_below(&random_, 2) == 0)
-                forged.data[16 + 3] ^= 0x5a; /* another session */
-            else
+            size_t session_at = 16 + 3; /* one cut before is among those seen, too */
+            if (grrl_random_below(&random_, 2) == 0 && forged.data.size() > session_at)
+                forged.data[session_at] ^= 0x5a;
+            else if (!forged.data.empty())
                 forged.data.resize(
                     grrl_random_below(&random_, static_cast<uint32_t>(forged.data.size())));
             send(forged);
@@ -228,13 +357,16 @@ private:
 
     Setup setup_;
     lcm_t *lcm_;
+    lcm_t *agent_lcm_;
     int64_t agent_session_ = agent_session;
     int64_t sim_session_ = sim_session;
-    std::unique_ptr<grrl_agent> agent_;
-    std::vector<grrl_case> cases_;
-    std::vector<grrl_experience_state> states_;
-    std::vector<grrl_experience> experiences_;
+    std::unique_ptr<bad_bus::BadBus> bus_;
+    std::unique_ptr<AgentHost> agent_;
+    std::unique_ptr<AgentHost> rival_;
     std::unique_ptr<Node> node_;
+    std::unique_ptr<Node> rival_node_;
+    int64_t frozen_until_us_ = 0;
+    std::set<Push> carried_out_;
     std::vector<Message> seen_;
     grrl_random random_{};
     Outcome outcome_;

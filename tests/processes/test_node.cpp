@@ -111,6 +111,8 @@ public:
                 grrl_wire_encode_decision(&decision, GRRL_WIRE_MAX_BYTES, bytes_, &why_));
     }
 
+    const Node &node() const { return *node_; }
+
     grrl_wire_points points{};
     grrl_trial_t trial{};
     grrl_push_status_t status{};
@@ -211,12 +213,36 @@ void commands_that_are_out_of_turn_are_ignored(void **)
     bad = good;
     bad.session_id++;
     puppet.send(bad);
-    bad = good;
-    bad.kind = GRRL_PUSH_COMMAND_T_WAIT;
-    puppet.send(bad);
     assert_int_equal(puppet.frames, frames);
     puppet.send(good);
     assert_int_equal(puppet.frames, frames + 1);
+}
+
+/* WAIT, with the newest frame and the supervisor's word: the agent sees nothing it could push. */
+void an_agent_with_nothing_to_push_is_shown_more_but_not_for_ever(void **)
+{
+    Puppet puppet;
+    for (int look = 0; look < 10; look++) {
+        puppet.settle();
+        assert_false(puppet.node().agent_is_blind());
+        int frames = puppet.frames;
+        puppet.send(puppet.answer());
+        assert_int_equal(puppet.frames, frames + 1);
+        assert_int_equal(puppet.points.message.phase, GRRL_POINTS_T_REST);
+    }
+    puppet.settle();
+    puppet.send(puppet.answer());
+    assert_true(puppet.node().agent_is_blind());
+    puppet.decide(1);
+    puppet.send(puppet.push(-0.1f, 0.1f)); /* at last */
+    assert_false(puppet.node().agent_is_blind());
+}
+
+void frames_tell_whose_pushes_they_show(void **)
+{
+    Puppet puppet;
+    puppet.settle();
+    assert_int_equal(puppet.points.message.agent_session_id, agent_session);
 }
 
 void no_model_no_push(void **)
@@ -239,6 +265,8 @@ int main()
         cmocka_unit_test(a_bad_push_is_refused_with_a_reason_and_counts),
         cmocka_unit_test(a_push_acts_once),
         cmocka_unit_test(commands_that_are_out_of_turn_are_ignored),
+        cmocka_unit_test(an_agent_with_nothing_to_push_is_shown_more_but_not_for_ever),
+        cmocka_unit_test(frames_tell_whose_pushes_they_show),
         cmocka_unit_test(no_model_no_push),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);

@@ -185,6 +185,12 @@ public:
 
     int pushes() const { return pushes_; }
 
+    void obey_rival()
+    {
+        rival_ = true;
+        report(GRRL_PUSH_STATUS_T_MOVING, GRRL_PUSH_STATUS_T_NONE);
+    }
+
 private:
     static void on_command(const lcm_recv_buf_t *buffer, const char *, void *user)
     {
@@ -218,7 +224,7 @@ private:
         grrl_push_status_t status{};
         status.utime = clock_us;
         status.session_id = 78;
-        status.agent_session_id = agent_session;
+        status.agent_session_id = rival_ ? agent_session + 1 : agent_session;
         status.cmd_seq = pushes_;
         status.state = state;
         status.reason = reason;
@@ -241,6 +247,7 @@ private:
     int pushes_ = 0;
     int rest_frames_ = 0;
     bool moving_ = false;
+    bool rival_ = false;
 };
 
 void a_tracker_and_a_robot_are_enough(void **)
@@ -258,6 +265,27 @@ void a_tracker_and_a_robot_are_enough(void **)
     assert_true(grrl_perception_model(&listener.agent().learner.perception)->n_joints >= 1);
 }
 
+/* What the other one moves would be put down to this agent's push. */
+void an_agent_gives_way_when_its_robot_moves_for_another(void **)
+{
+    Listener listener(false);
+    OwnPlant plant(listener.lcm());
+    for (int i = 0; i < 5000 && plant.pushes() < 2; i++) {
+        plant.frame();
+        listener.handle_all();
+    }
+    assert_false(grrl_agent_gave_way(&listener.agent()));
+    uint32_t cases = listener.agent().learner.cases.n;
+    plant.obey_rival();
+    for (int i = 0; i < 200; i++) {
+        plant.frame();
+        listener.handle_all();
+    }
+    assert_true(grrl_agent_gave_way(&listener.agent()));
+    assert_int_equal(plant.pushes(), 2);
+    assert_int_equal(listener.agent().learner.cases.n, cases);
+}
+
 } // namespace
 
 int main()
@@ -268,6 +296,7 @@ int main()
         cmocka_unit_test(decisions_may_come_late),
         cmocka_unit_test(judgements_may_come_late),
         cmocka_unit_test(a_tracker_and_a_robot_are_enough),
+        cmocka_unit_test(an_agent_gives_way_when_its_robot_moves_for_another),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

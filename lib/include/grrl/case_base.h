@@ -108,4 +108,9 @@ GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base
 GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
                                                const struct grrl_experience_io *io);
 
+/* As grrl_experience_load_torn. */
+GRRL_MUST_USE enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
+                                                    const struct grrl_experience_io *io,
+                                                    uint32_t *lost);
+
 #endif

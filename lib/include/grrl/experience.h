@@ -228,4 +228,10 @@ GRRL_MUST_USE enum grrl_status grrl_experience_save(const struct grrl_experience
 GRRL_MUST_USE enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
                                                     const struct grrl_experience_io *io);
 
+/* As grrl_experience_load, but after GRRL_ERR_IO, and only then, the store holds the experiences
+ * that were whole; *lost becomes the number of those the header announced beyond them. */
+GRRL_MUST_USE enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
+                                                         const struct grrl_experience_io *io,
+                                                         uint32_t *lost);
+
 #endif

@@ -141,6 +141,15 @@ GRRL_MUST_USE enum grrl_status grrl_learner_save(const struct grrl_learner *lear
 GRRL_MUST_USE enum grrl_status grrl_learner_load(struct grrl_learner *learner,
                                                  const struct grrl_experience_io *io);
 
+/*
+ * As grrl_learner_load, for a file that ends early: after GRRL_ERR_IO, and only then, the learner
+ * knows what the file held whole. *lost becomes how many records it announced beyond those; what
+ * stood behind a header that is cut off is not counted.
+ */
+GRRL_MUST_USE enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
+                                                      const struct grrl_experience_io *io,
+                                                      uint32_t *lost);
+
 /* The believed structure as a term, D(lb, ..), links named fn with their properties. */
 GRRL_MUST_USE enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
                                                  struct grrl_term_store *store, grrl_term *term);
