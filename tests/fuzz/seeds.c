@@ -13,6 +13,7 @@
 
 #include "controller.h"
 #include "grrl/learner.h"
+#include "link.h"
 #include "wire.h"
 
 enum { POINTS = 12, PER_LINK = 6, PATH_BYTES = 1024, REST = 10, TURNS = 12, PUSH_FRAMES = 2 };
@@ -198,18 +199,25 @@ static void write_log(void)
     lcm_eventlog_destroy(log);
 }
 
-/* --- packets ---------------------------------------------------------------------------------- */
+/* --- packets, as they are and on a serial line --------------------------------------------- */
+
+static uint8_t sequence; /* of the last request on the line; 0: the packets are as they are */
 
 static void put_packet(FILE *file)
 {
+    uint8_t step[2] = {1, sequence}; /* a whole frame, see fuzz_line.c */
     uint8_t head[3] = {packet.type, (uint8_t)packet.n, (uint8_t)(packet.n >> 8)};
+    if (sequence > 0) {
+        put(file, step, sizeof step);
+        sequence = onboard_link_next(sequence);
+    }
     put(file, head, sizeof head);
     put(file, packet.bytes, packet.n);
 }
 
 static void put_request(FILE *file, enum onboard_packet_type type, unsigned n)
 {
-    onboard_packet_begin(&packet, type);
+    onboard_packet_begin(&packet, (uint8_t)type);
     for (unsigned i = 0; i < n; i++)
         onboard_put(&packet, i == 0, 1);
     put_packet(file);
@@ -225,8 +233,10 @@ static void put_frame(FILE *file, float turn, bool pushing)
 
 static void write_packets(void)
 {
-    FILE *file = create("packets", "trial");
+    FILE *file = create(sequence > 0 ? "line" : "packets", "trial");
     put(file, "\1", 1);
+    if (sequence > 0)
+        put_request(file, ONBOARD_TRIAL, 4);
     put_frame(file, 0.0f, false);
     put_request(file, ONBOARD_PERCEIVE, 0);
     put_request(file, ONBOARD_CHOOSE, 0);
@@ -314,6 +324,8 @@ int main(int argc, char **argv)
     points.message.mode = GRRL_POINTS_T_LOCK_STEP;
     write_messages();
     write_log();
+    write_packets();
+    sequence = 1;
     write_packets();
     write_store("cases", GRRL_POLICY_LEARN, 1);
     write_store("paper", GRRL_POLICY_PAPER, 3);
