@@ -72,6 +72,10 @@ void add_learn(std::vector<Policy> &table)
                             [](grrl_learner_config &c) { c.policy.cases.mismatch = 0.0f; }));
     table.push_back(changed("learn", "no-bound", "the best estimate, not the best bound",
                             [](grrl_learner_config &c) { c.policy.cases.bound = 0.0f; }));
+    table.push_back(changed("learn", "no-doubt", "older rewards count whatever the trial brings",
+                            [](grrl_learner_config &c) { c.policy.cases.doubt = 0.0f; }));
+    table.push_back(changed("learn", "no-present", "rewards of the running trial count no more",
+                            [](grrl_learner_config &c) { c.policy.cases.present = 0.0f; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         table.push_back(changed("learn", std::string("no-") + parts[i],
                                 std::string("without a part of the context: ") + parts[i],

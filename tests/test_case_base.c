@@ -160,6 +160,33 @@ static void refuted_expectations_weaken_older_rewards(void **state)
     assert_true(f.base.refuted == 0.0f); /* more than expected refutes nothing */
 }
 
+static void doubt_that_does_not_help_is_given_up(void **state)
+{
+    (void)state;
+    struct grrl_context good = context(0, 0);
+    struct grrl_context other = context(1, 1);
+    f.config.give_up = 4.0f;
+    f.config.present = 0.0f;
+    for (int trial = 0; trial < 10; ++trial) {
+        grrl_cases_begin_trial(&f.base);
+        (void)grrl_cases_learn(&f.base, &f.config, &good, 3.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, &other, 2.0f);
+    }
+    grrl_cases_begin_trial(&f.base);
+    float trusted = estimate(&other);
+    float lowest = trusted;
+    float most = 0.0f;
+    bool again = false;
+    for (int push = 0; push < 20; ++push) {
+        (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+        most = f.base.refuted > most ? f.base.refuted : most;
+        lowest = estimate(&other) < lowest ? estimate(&other) : lowest;
+        again = again || (lowest < 0.5f * trusted && estimate(&other) > 0.8f * trusted);
+    }
+    assert_true(most > 1.0f && most <= 4.0f);
+    assert_true(again);
+}
+
 static void the_case_not_met_for_the_longest_time_makes_room(void **state)
 {
     (void)state;
@@ -287,6 +314,7 @@ int main(void)
         cmocka_unit_test_setup(parts_left_out_do_not_count, set_up),
         cmocka_unit_test_setup(the_latest_rewards_count, set_up),
         cmocka_unit_test_setup(refuted_expectations_weaken_older_rewards, set_up),
+        cmocka_unit_test_setup(doubt_that_does_not_help_is_given_up, set_up),
         cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
         cmocka_unit_test_setup(cases_come_back_from_a_file, set_up),

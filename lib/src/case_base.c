@@ -12,6 +12,8 @@ void grrl_case_config_default(struct grrl_case_config *config)
                                         .bound = 0.4f,
                                         .doubt = 1.0f,
                                         .patience = 1.0f,
+                                        .give_up = 7.0f,
+                                        .present = 3.0f,
                                         .memory = 5,
                                         .parts = GRRL_ALL_CONTEXT_PARTS};
 }
@@ -34,6 +36,8 @@ enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, c
         {"cases.bound", is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
         {"cases.doubt", is_within(config->doubt, 0.0f, GRRL_MAX_REWARD)},
         {"cases.patience", is_within(config->patience, 0.0f, GRRL_MAX_REWARD)},
+        {"cases.give_up", is_within(config->give_up, 0.001f, GRRL_MAX_REWARD)},
+        {"cases.present", is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
         {"cases.memory", config->memory >= 1},
         {"cases.parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
     };
@@ -103,7 +107,7 @@ void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_ca
         uint8_t mismatches = count_mismatches(&met->context, context, config->parts);
         uint8_t n = met->n < config->memory ? met->n : config->memory;
         float before = older * (float)n;
-        float now = (float)met->n_now;
+        float now = config->present * (float)met->n_now;
         weight += weight_of[mismatches] * (before + now);
         sum += weight_of[mismatches] * (before * met->value + now * met->value_now);
         if (mismatches < estimate->mismatches ||
@@ -148,7 +152,9 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
     struct grrl_estimate expected;
     grrl_cases_estimate(base, config, context, &expected);
     base->refuted += expected.value - reward;
-    base->refuted = base->refuted > 0.0f ? base->refuted : 0.0f;
+    if (base->refuted < 0.0f || base->refuted > config->give_up) {
+        base->refuted = 0.0f;
+    }
 
     if (base->capacity == 0) {
         return GRRL_NO_CASE;

@@ -7,10 +7,10 @@
  * Nadaraya, Theory Probab. Appl. 9, 1964; instance-based: Aha, Kibler & Albert, Machine Learning 6,
  * 1991), and over a prior.
  *
- * Rewards of the running trial also count by themselves, and the more the estimates were refuted in
- * it, the less older rewards count: an object of another kind is noticed, and little is carried
- * over to it. The memory is the caller's and fixed; when it is full, the case not met for the
- * longest time makes room.
+ * Rewards of the running trial count more, and the more the estimates were refuted in it, the less
+ * older rewards count: an object of another kind is noticed, and little is carried over to it. When
+ * doubt did not help either, it is the object that is hard: older rewards count again. The memory
+ * is the caller's and fixed; when it is full, the case not met for the longest time makes room.
  *
  * Order of calls: grrl_cases_init; grrl_cases_begin_trial for each trial; then grrl_cases_estimate
  * as often as wanted and grrl_cases_learn once for each push.
@@ -29,6 +29,8 @@ struct grrl_case_config {
     float bound;        /* upper bound = estimate + bound / sqrt(weight), >= 0; 0.4 */
     float doubt;        /* older rewards count exp(-doubt (refuted - patience)) times, >= 0; 1 */
     float patience;     /* disappointment, in rewards, that is chance; >= 0; 1 */
+    float give_up;      /* disappointment after which doubt begins anew from none; > 0; 7 */
+    float present;      /* further times that a reward of the running trial counts, >= 0; 3 */
     uint8_t memory;     /* rewards that a case remembers, >= 1; 5 */
     uint16_t parts;     /* bit i: part i of a context counts; all */
 };
@@ -50,7 +52,8 @@ struct grrl_case_base {
     uint32_t capacity;
     uint32_t high_water; /* most cases at a time */
     uint32_t evictions;
-    float refuted; /* rewards expected and not met in this trial, less those met unexpected; >= 0 */
+    float refuted; /* rewards expected and not met in this trial, less those met unexpected; from 0
+                      to give_up */
     /* private */
     uint32_t clock;
     struct grrl_case *cases;
