@@ -9,6 +9,7 @@
 
 #include "grrl/case_base.h"
 #include "grrl/random.h"
+#include "memory_file.h"
 
 #define SEED UINT64_C(20080631)
 
@@ -225,36 +226,7 @@ static void a_wrong_configuration_is_refused(void **state)
     assert_string_equal(field, "cases.parts");
 }
 
-/* A file in memory. */
-static struct {
-    uint8_t bytes[4096];
-    size_t n;
-    size_t at;
-} file;
-
-static int file_write(void *context, const void *bytes, size_t size)
-{
-    (void)context;
-    if (size > sizeof file.bytes - file.n) {
-        return -1;
-    }
-    memcpy(file.bytes + file.n, bytes, size);
-    file.n += size;
-    return 0;
-}
-
-static int file_read(void *context, void *bytes, size_t size)
-{
-    (void)context;
-    if (size > file.n - file.at) {
-        return -1;
-    }
-    memcpy(bytes, file.bytes + file.at, size);
-    file.at += size;
-    return 0;
-}
-
-static const struct grrl_experience_io io = {.write = file_write, .read = file_read};
+static struct memory_file file = {.calls_left = -1};
 
 static void save_some(void)
 {
@@ -263,7 +235,8 @@ static void save_some(void)
         (void)grrl_cases_learn(&f.base, &f.config, &a, (float)(i % 3));
     }
     grrl_cases_begin_trial(&f.base);
-    file.n = file.at = 0;
+    file.size = file.at = 0;
+    const struct grrl_experience_io io = memory_file_io(&file);
     assert_int_equal(grrl_cases_save(&f.base, &io), GRRL_OK);
 }
 
@@ -273,9 +246,10 @@ static void cases_come_back_from_a_file(void **state)
     save_some();
     struct grrl_case cases[CAPACITY];
     struct grrl_case_base again;
+    const struct grrl_experience_io io = memory_file_io(&file);
     grrl_cases_init(&again, cases, CAPACITY);
     assert_int_equal(grrl_cases_load(&again, &io), GRRL_OK);
-    assert_int_equal(file.at, file.n);
+    assert_int_equal(file.at, file.size);
     assert_int_equal(again.n, f.base.n);
     assert_int_equal(again.clock, f.base.clock);
     assert_memory_equal(again.cases, f.base.cases, f.base.n * sizeof f.base.cases[0]);
@@ -289,8 +263,9 @@ static void a_damaged_file_is_refused(void **state)
 {
     (void)state;
     save_some();
-    const size_t whole = file.n;
-    for (file.n = 0; file.n < whole; ++file.n) {
+    const struct grrl_experience_io io = memory_file_io(&file);
+    const size_t whole = file.size;
+    for (file.size = 0; file.size < whole; ++file.size) {
         file.at = 0;
         assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_IO);
         assert_int_equal(f.base.n, 0);

@@ -8,46 +8,12 @@
 
 #include "grrl/experience.h"
 #include "grrl/random.h"
+#include "memory_file.h"
 #include "store_check.h"
 
 #define SEED UINT64_C(20080628)
 
-enum { STATES = 12, EXPERIENCES = 30, FILE_BYTES = 8192, HEADER = 24, CRC = 4, EXPERIENCE = 30 };
-
-/* A file in memory; the calls_left-th call fails, -1: none does. */
-struct memory_file {
-    uint8_t bytes[FILE_BYTES];
-    size_t size;
-    size_t at;
-    int calls_left;
-};
-
-static int fail_now(struct memory_file *file)
-{
-    return file->calls_left >= 0 && file->calls_left-- == 0;
-}
-
-static int write_bytes(void *context, const void *bytes, size_t size)
-{
-    struct memory_file *file = context;
-    if (fail_now(file) || size > FILE_BYTES - file->size) {
-        return -1;
-    }
-    memcpy(file->bytes + file->size, bytes, size);
-    file->size += size;
-    return 0;
-}
-
-static int read_bytes(void *context, void *bytes, size_t size)
-{
-    struct memory_file *file = context;
-    if (fail_now(file) || size > file->size - file->at) {
-        return -1;
-    }
-    memcpy(bytes, file->bytes + file->at, size);
-    file->at += size;
-    return 0;
-}
+enum { STATES = 12, EXPERIENCES = 30, HEADER = 24, CRC = 4, EXPERIENCE = 30 };
 
 struct fixture {
     struct grrl_experience_store store;
@@ -67,14 +33,14 @@ static void init(struct fixture *fixture, uint32_t states, uint32_t experiences)
 static enum grrl_status save(const struct fixture *fixture, struct memory_file *to)
 {
     to->size = 0;
-    struct grrl_experience_io io = {.context = to, .write = write_bytes};
+    struct grrl_experience_io io = {.context = to, .write = memory_file_write};
     return grrl_experience_save(&fixture->store, &io);
 }
 
 static enum grrl_status load(struct fixture *fixture, struct memory_file *from)
 {
     from->at = 0;
-    struct grrl_experience_io io = {.context = from, .read = read_bytes};
+    struct grrl_experience_io io = {.context = from, .read = memory_file_read};
     return grrl_experience_load(&fixture->store, &io);
 }
 
@@ -213,7 +179,7 @@ static void a_torn_file_gives_what_was_whole(void **state)
         uint32_t lost;
         file.size = size;
         file.at = 0;
-        const struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+        const struct grrl_experience_io io = {.context = &file, .read = memory_file_read};
         assert_int_equal(grrl_experience_load_torn(&copy.store, &io, &lost), GRRL_ERR_IO);
         check_store(&copy.store);
         size_t records = size + total * (size_t)EXPERIENCE > whole

@@ -8,6 +8,7 @@
 
 #include "grrl/learner.h"
 #include "grrl/term.h"
+#include "memory_file.h"
 #include "store_check.h"
 
 #define SEED UINT64_C(20080630)
@@ -297,63 +298,35 @@ static void the_same_outcomes_give_the_same_choices(void **state)
     }
 }
 
-/* What was learned, as a file in memory. */
-static struct {
-    uint8_t bytes[1 << 16];
-    size_t n;
-    size_t at;
-} file;
-
-static int file_write(void *context, const void *bytes, size_t size)
-{
-    (void)context;
-    if (size > sizeof file.bytes - file.n) {
-        return -1;
-    }
-    memcpy(file.bytes + file.n, bytes, size);
-    file.n += size;
-    return 0;
-}
-
-static int file_read(void *context, void *bytes, size_t size)
-{
-    (void)context;
-    if (size > file.n - file.at) {
-        return -1;
-    }
-    memcpy(bytes, file.bytes + file.at, size);
-    file.at += size;
-    return 0;
-}
-
-static const struct grrl_experience_io file_io = {.write = file_write, .read = file_read};
+static struct memory_file file = {.calls_left = -1};
 
 static void what_was_learned_can_be_saved(void **state)
 {
     (void)state;
+    const struct grrl_experience_io io = memory_file_io(&file);
     for (int i = 0; i < LEARNERS; ++i) {
         uint32_t hash = 0;
         uint32_t a = 0;
         uint32_t b = 0;
         init(&one, learners[i], SEED);
         (void)run_trials(&one, "RPRP", 1, 10, &hash);
-        file.n = file.at = 0;
-        assert_int_equal(grrl_learner_save(&one.learner, &file_io), GRRL_OK);
+        file.size = file.at = 0;
+        assert_int_equal(grrl_learner_save(&one.learner, &io), GRRL_OK);
         init(&two, learners[i], SEED);
-        assert_int_equal(grrl_learner_load(&two.learner, &file_io), GRRL_OK);
-        assert_int_equal(file.at, file.n);
+        assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_OK);
+        assert_int_equal(file.at, file.size);
         assert_int_equal(grrl_learner_usage(&two.learner).n, grrl_learner_usage(&one.learner).n);
         unsigned pushes = run_trials(&one, "RPRP", 11, 10, &a);
         assert_int_equal(run_trials(&two, "RPRP", 11, 10, &b), pushes);
         assert_int_equal(a, b);
-        for (size_t cut = 0; cut < file.n; cut += cut < 200 ? 1 : 37) {
-            size_t whole = file.n;
-            file.n = cut;
+        for (size_t cut = 0; cut < file.size; cut += cut < 200 ? 1 : 37) {
+            size_t whole = file.size;
+            file.size = cut;
             file.at = 0;
-            assert_int_equal(grrl_learner_load(&two.learner, &file_io), GRRL_ERR_IO);
+            assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_IO);
             assert_int_equal(two.learner.cases.n, 0);
             assert_int_equal(two.learner.store.n_experiences, 0);
-            file.n = whole;
+            file.size = whole;
         }
     }
 }
