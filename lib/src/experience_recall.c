@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "bits.h"
+#include "closest.h"
 #include "experience_private.h"
 
 /*
@@ -17,6 +18,7 @@ struct job {
     uint32_t budget;                /* left for the stored state, */
     uint32_t steps;                 /* and for the sub-structures of the recall */
     uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
+    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MAX_LINKS + 1]; /* current links with so many joints */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of it */
@@ -53,23 +55,32 @@ static bool improves(const struct job *job, uint32_t experience,
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
-/* Whether stored link v could be bound to current link c, as far as label and degrees tell. */
-static bool could_bind(const struct job *job, uint8_t v, uint8_t c)
+static void count_joints(struct job *job)
 {
-    const struct grrl_graph *stored = &job->graph;
-    if (grrl_label_masked(stored->label[v], job->mask) !=
-        grrl_label_masked(job->current->label[c], job->mask)) {
-        return false;
-    }
     for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
-        unsigned degree_v = grrl_bit_count(stored->joined[type][v]);
-        unsigned degree_c = grrl_bit_count(job->current->joined[type][c]);
-        if (degree_v != degree_c &&
-            (job->kind == GRRL_MATCH_ISOMORPHISM || (degree_v < degree_c) != job->forth)) {
-            return false;
+        for (uint8_t c = 0; c < job->current->n; ++c) {
+            unsigned degree = grrl_bit_count(job->current->joined[type][c]);
+            for (unsigned k = 0; k <= degree; ++k) {
+                job->at_least[type][k] |= grrl_bit(c);
+            }
         }
     }
-    return true;
+}
+
+/* Current links that stored link v could be bound to, as far as degrees tell. */
+static uint32_t could_bind(const struct job *job, uint8_t v)
+{
+    uint32_t links = UINT32_MAX;
+    for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
+        unsigned degree = grrl_bit_count(job->graph.joined[type][v]);
+        if (job->forth) {
+            links &= job->at_least[type][degree];
+        }
+        if (!job->forth || job->kind == GRRL_MATCH_ISOMORPHISM) {
+            links &= ~job->at_least[type][degree + 1];
+        }
+    }
+    return links;
 }
 
 /* The bindings that would bring a closer experience for some action; false if there are none. */
@@ -80,11 +91,14 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
-        for (uint32_t open = job->open[experience->direction]; open != 0; open &= open - 1u) {
-            uint8_t c = grrl_first_bit(open);
-            if (improves(job, i, &job->recall->entry[c][experience->direction]) &&
-                could_bind(job, experience->link, c)) {
-                wanted->to[experience->link] |= grrl_bit(c);
+        const uint8_t v = experience->link;
+        const grrl_label label = grrl_label_masked(job->graph.label[v], job->mask);
+        uint32_t links = job->open[experience->direction] & could_bind(job, v);
+        for (; links != 0; links &= links - 1u) {
+            uint8_t c = grrl_first_bit(links);
+            if (grrl_label_masked(job->current->label[c], job->mask) == label &&
+                improves(job, i, &job->recall->entry[c][experience->direction])) {
+                wanted->to[v] |= grrl_bit(c);
                 any = true;
             }
         }
@@ -286,59 +300,44 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
 /* No two states differ by more links and joints. */
 enum { FARTHEST = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
 
-_Static_assert(FARTHEST <= UINT8_MAX, "distances are bytes");
+_Static_assert(FARTHEST <= UINT8_MAX && GRRL_MAX_JOINTS <= INT8_MAX,
+               "distances are bytes, and signatures count all links and joints");
 
-/* The states closest to the current one, as far as signatures tell. */
-struct nearest {
-    unsigned n;
-    uint32_t state[GRRL_RECALL_STATES];
-    uint8_t distance[GRRL_RECALL_STATES];
-};
-
-static bool is_part(const struct grrl_experience_state *part,
-                    const struct grrl_experience_state *whole)
+/* Links and joints, as a signature has them. */
+static unsigned size_of(uint64_t counts)
 {
-    return grrl_experience_fits(part->signature.word[0], &part->paths, whole->signature.word[0],
-                                &whole->paths);
+    return (unsigned)((counts & 0xffu) + (counts >> 8 & 0xffu) + (counts >> 16 & 0xffu));
 }
 
-/* Links and joints that only one of the two has if one is a sub-structure of the other. With equal
- * counts of them they are isomorphic or nothing: not wanted here, as is what does not fit: 0. */
-static unsigned distance_of(const struct grrl_experience_state *stored,
-                            const struct grrl_experience_state *current)
-{
-    const unsigned size = (unsigned)stored->n + stored->joints[0] + stored->joints[1];
-    const unsigned own = (unsigned)current->n + current->joints[0] + current->joints[1];
-    if (size < own) {
-        return is_part(stored, current) ? own - size : 0;
-    }
-    return size > own && is_part(current, stored) ? size - own : 0;
-}
+_Static_assert(offsetof(struct grrl_experience_state, signature.word[1]) <= 32,
+               "half a cache line is all that a scan reads of a state");
 
-/* Without an index: all that fit if there is room, else those up to the distance at which there no
- * longer is, of the last distance those with the lowest numbers. */
+/* Without an index: of all states that fit, in one pass. With as many links and joints as the
+ * current one a state is isomorphic or nothing: not wanted here. */
 static void scan_states(const struct grrl_experience_store *store,
-                        const struct grrl_experience_state *current, uint32_t room,
-                        struct nearest *nearest)
+                        const struct grrl_experience_state *current, struct grrl_closest *closest)
 {
-    uint32_t count[FARTHEST + 1] = {0};
-    unsigned last = 0;
+    enum { AHEAD = 16 }; /* a state takes a few nanoseconds, memory a hundred */
+    const uint64_t own_counts = current->signature.word[0];
+    const unsigned own = size_of(own_counts);
     for (uint32_t i = 0; i < store->n_states; ++i) {
-        ++count[distance_of(&store->states[i], current)];
-    }
-    while (last < FARTHEST && count[last + 1] <= room) {
-        room -= count[++last];
-    }
-    nearest->n = 0;
-    for (uint32_t i = 0; i < store->n_states; ++i) {
-        unsigned distance = distance_of(&store->states[i], current);
-        if (distance == 0 || distance > last + 1 || (distance == last + 1 && room == 0)) {
+        if (i + AHEAD < store->n_states) {
+            grrl_prefetch(&store->states[i + AHEAD]);
+        }
+        const struct grrl_experience_state *stored = &store->states[i];
+        const uint64_t counts = stored->signature.word[0];
+        const unsigned size = size_of(counts);
+        const bool larger = size > own;
+        const unsigned distance = larger ? size - own : own - size;
+        if (distance == 0 || !grrl_closest_wants(closest, distance, i)) {
             continue;
         }
-        room -= distance == last + 1;
-        nearest->state[nearest->n] = i;
-        nearest->distance[nearest->n++] = (uint8_t)distance;
+        if (larger ? grrl_experience_fits(own_counts, &current->paths, counts, &stored->paths)
+                   : grrl_experience_fits(counts, &stored->paths, own_counts, &current->paths)) {
+            grrl_closest_add(closest, distance, i);
+        }
     }
+    grrl_closest_sort(closest);
 }
 
 /* What states of the next distance could still improve: what has no entry. False: nothing. */
@@ -369,17 +368,17 @@ static bool knows_open_direction(const struct job *job, const struct grrl_experi
 
 /* Of thousands of states few are in a cache: asks for the next ones, their first lines before what
  * these lead to. */
-static void look_ahead(const struct grrl_experience_store *store, const struct nearest *nearest,
-                       unsigned k)
+static void look_ahead(const struct grrl_experience_store *store,
+                       const struct grrl_closest *closest, unsigned k)
 {
     enum { FAR = 8, NEAR = 4, LINE_BYTES = 64 };
-    if (k + FAR < nearest->n) {
-        const struct grrl_experience_state *state = &store->states[nearest->state[k + FAR]];
+    if (k + FAR < closest->n) {
+        const struct grrl_experience_state *state = &store->states[closest->state[k + FAR]];
         grrl_prefetch(state);
-        grrl_prefetch(&state->n);
+        grrl_prefetch(&state->first);
     }
-    if (k + NEAR < nearest->n) {
-        const struct grrl_experience_state *state = &store->states[nearest->state[k + NEAR]];
+    if (k + NEAR < closest->n) {
+        const struct grrl_experience_state *state = &store->states[closest->state[k + NEAR]];
         grrl_prefetch(&store->experiences[state->first]);
         grrl_prefetch(state->edge);
         for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
@@ -398,7 +397,7 @@ static void consult_part(struct job *job, uint32_t state, unsigned distance,
     take_state(job, state, config);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
-    job->forth = is_part(job->stored, current);
+    job->forth = size_of(job->stored->signature.word[0]) < size_of(current->signature.word[0]);
     consult_substructure(job, current, places, (uint8_t)distance);
     job->steps -= granted - job->budget;
 }
@@ -408,27 +407,32 @@ static void consult_parts(struct job *job, const struct grrl_recall_config *conf
                           const struct grrl_experience_state *current, grrl_label places)
 {
     const struct grrl_experience_index *index = job->store->index;
-    struct nearest nearest;
+    struct grrl_closest closest;
+    unsigned k = 0;
+    unsigned left = config->states < GRRL_RECALL_STATES ? config->states : GRRL_RECALL_STATES;
+    unsigned reach = FARTHEST;
     job->kind = GRRL_MATCH_MONOMORPHISM;
     job->steps = GRRL_RECALL_STEPS;
-    unsigned left = config->states < GRRL_RECALL_STATES ? config->states : GRRL_RECALL_STATES;
-    if (index == NULL) {
-        scan_states(job->store, current, left, &nearest);
-        left = nearest.n;
+    if (left == 0 || !find_open(job)) {
+        return;
     }
-    unsigned reach = index == NULL ? FARTHEST : grrl_experience_index_reach(index, current);
+    if (index != NULL) {
+        reach = grrl_experience_index_reach(index, current);
+    } else {
+        grrl_closest_clear(&closest, left);
+        scan_states(job->store, current, &closest);
+        left = closest.n;
+    }
     for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
         if (index != NULL) {
-            nearest.n = grrl_experience_index_find(index, current, d, left, nearest.state);
+            k = 0;
+            grrl_closest_clear(&closest, left);
+            grrl_experience_index_find(index, current, d, &closest);
         }
-        for (unsigned k = 0; k < nearest.n; ++k) {
-            if (index != NULL) {
-                look_ahead(job->store, &nearest, k);
-            }
-            if (index != NULL || nearest.distance[k] == d) {
-                consult_part(job, nearest.state[k], d, config, current, places);
-                --left;
-            }
+        for (; k < closest.n && closest.distance[k] == d; ++k) {
+            look_ahead(job->store, &closest, k);
+            consult_part(job, closest.state[k], d, config, current, places);
+            --left;
         }
     }
 }
@@ -453,6 +457,7 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
     for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
         job.open[direction] = grrl_bits_below(state->n);
     }
+    count_joints(&job);
     consult_isomorphic(&job, config, &current, places);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
         consult_parts(&job, config, &current, places);
