@@ -13,7 +13,10 @@
 /* One recall under way, and how it regards the stored state it has come to. */
 struct job {
     const struct grrl_experience_store *store;
+    const struct grrl_recall_config *config;
     const struct grrl_graph *current;
+    const struct grrl_experience_state *described; /* the current state as it would be stored, */
+    grrl_label places;                             /* and its properties in use, as mask bytes */
     struct grrl_recall *recall;
     uint32_t budget;                /* left for the stored state, */
     uint32_t steps;                 /* and for the sub-structures of the recall */
@@ -28,10 +31,17 @@ struct job {
     struct grrl_recall_entry offer; /* level, distance and dropped of all its matches */
 };
 
-/* Current links for each stored link. */
+/* Current links for each link of the stored state. */
 struct binding {
     uint32_t to[GRRL_MAX_LINKS];
 };
+
+static void clear_binding(struct binding *binding, uint8_t n)
+{
+    for (uint8_t v = 0; v < n; ++v) {
+        binding->to[v] = 0;
+    }
+}
 
 /* Whether an experience of the offered closeness is closer than what the entry has. */
 static bool improves(const struct job *job, uint32_t experience,
@@ -86,7 +96,7 @@ static uint32_t could_bind(const struct job *job, uint8_t v)
 /* The bindings that would bring a closer experience for some action; false if there are none. */
 static bool wanted_bindings(const struct job *job, struct binding *wanted)
 {
-    memset(wanted, 0, sizeof *wanted);
+    clear_binding(wanted, job->graph.n);
     bool any = false;
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
@@ -157,7 +167,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
 
 static void find_bindings(struct job *job, const struct binding *wanted, struct binding *found)
 {
-    memset(found, 0, sizeof *found);
+    clear_binding(found, job->graph.n);
     struct grrl_match match;
     begin(job, &match);
     for (int i = 0; i < MAPPINGS; ++i) {
@@ -226,9 +236,9 @@ static grrl_label drop_last(grrl_label places)
 }
 
 /* Isomorphic without properties: ever fewer of them. */
-static void consult_relaxed(struct job *job, grrl_label current_places)
+static void consult_relaxed(struct job *job)
 {
-    grrl_label places = current_places | places_in_use(&job->graph);
+    grrl_label places = job->places | places_in_use(&job->graph);
     job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_RELAXED};
     while (places != 0) {
         places = drop_last(places);
@@ -239,16 +249,16 @@ static void consult_relaxed(struct job *job, grrl_label current_places)
 }
 
 /* With all properties, then with none. */
-static void consult_substructure(struct job *job, const struct grrl_experience_state *current,
-                                 grrl_label current_places, uint8_t distance)
+static void consult_substructure(struct job *job, uint8_t distance)
 {
-    grrl_label places = current_places | places_in_use(&job->graph);
+    grrl_label places = job->places | places_in_use(&job->graph);
     job->offer =
         (struct grrl_recall_entry){.level = GRRL_RECALL_SUBSTRUCTURE, .distance = distance};
     job->mask = GRRL_ALL_PROPERTIES;
     const struct grrl_signature *stored = &job->stored->signature;
-    if (job->forth ? grrl_signature_within(stored, &current->signature, false)
-                   : grrl_signature_within(&current->signature, stored, false)) {
+    const struct grrl_signature *current = &job->described->signature;
+    if (job->forth ? grrl_signature_within(stored, current, false)
+                   : grrl_signature_within(current, stored, false)) {
         consult(job);
     }
     for (; places != 0; places = drop_last(places)) {
@@ -260,26 +270,26 @@ static void consult_substructure(struct job *job, const struct grrl_experience_s
     }
 }
 
-static void take_state(struct job *job, uint32_t state, const struct grrl_recall_config *config)
+static void take_state(struct job *job, uint32_t state)
 {
     job->stored = &job->store->states[state];
-    job->budget = config->budget;
+    job->budget = job->config->budget;
     grrl_experience_graph(job->stored, &job->graph);
 }
 
-static void consult_isomorphic(struct job *job, const struct grrl_recall_config *config,
-                               const struct grrl_experience_state *current, grrl_label places)
+static void consult_isomorphic(struct job *job)
 {
+    const struct grrl_experience_state *current = job->described;
     job->kind = GRRL_MATCH_ISOMORPHISM;
     job->forth = true;
     uint32_t exact = grrl_experience_find_state(job->store, current);
     if (exact != GRRL_NO_STATE) {
-        take_state(job, exact, config);
+        take_state(job, exact);
         job->mask = GRRL_ALL_PROPERTIES;
         job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
         consult(job);
     }
-    if (config->deepest < GRRL_RECALL_RELAXED) {
+    if (job->config->deepest < GRRL_RECALL_RELAXED) {
         return;
     }
     uint32_t shape = current->key[GRRL_TABLE_SHAPE];
@@ -289,8 +299,8 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
         const struct grrl_experience_state *stored = &job->store->states[i];
         if (stored->n == current->n &&
             memcmp(stored->joints, current->joints, sizeof current->joints) == 0) {
-            take_state(job, i, config);
-            consult_relaxed(job, places);
+            take_state(job, i);
+            consult_relaxed(job);
         }
     }
 }
@@ -366,74 +376,92 @@ static bool knows_open_direction(const struct job *job, const struct grrl_experi
     return false;
 }
 
-/* Of thousands of states few are in a cache: asks for the next ones, their first lines before what
- * these lead to. */
-static void look_ahead(const struct grrl_experience_store *store,
-                       const struct grrl_closest *closest, unsigned k)
-{
-    enum { FAR = 8, NEAR = 4, LINE_BYTES = 64 };
-    if (k + FAR < closest->n) {
-        const struct grrl_experience_state *state = &store->states[closest->state[k + FAR]];
-        grrl_prefetch(state);
-        grrl_prefetch(&state->first);
-    }
-    if (k + NEAR < closest->n) {
-        const struct grrl_experience_state *state = &store->states[closest->state[k + NEAR]];
-        grrl_prefetch(&store->experiences[state->first]);
-        grrl_prefetch(state->edge);
-        for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
-            grrl_prefetch(&state->label[i]);
-        }
-    }
-}
-
-static void consult_part(struct job *job, uint32_t state, unsigned distance,
-                         const struct grrl_recall_config *config,
-                         const struct grrl_experience_state *current, grrl_label places)
+static void consult_part(struct job *job, uint32_t state, uint8_t distance)
 {
     if (!knows_open_direction(job, &job->store->states[state])) {
         return;
     }
-    take_state(job, state, config);
+    take_state(job, state);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
-    job->forth = size_of(job->stored->signature.word[0]) < size_of(current->signature.word[0]);
-    consult_substructure(job, current, places, (uint8_t)distance);
+    job->forth =
+        size_of(job->stored->signature.word[0]) < size_of(job->described->signature.word[0]);
+    consult_substructure(job, distance);
     job->steps -= granted - job->budget;
 }
 
+/* Asks for the first lines of a state, then for what these lead to. */
+static void ask_for_state(const struct grrl_experience_state *state)
+{
+    grrl_prefetch(state);
+    grrl_prefetch(&state->first);
+}
+
+static void ask_for_links(const struct grrl_experience_store *store,
+                          const struct grrl_experience_state *state)
+{
+    enum { LINE_BYTES = 64 };
+    grrl_prefetch(&store->experiences[state->first]);
+    grrl_prefetch(state->edge);
+    for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
+        grrl_prefetch(&state->label[i]);
+    }
+}
+
+/* Of thousands of states few are in a cache: they are asked for some states ahead of their turn. */
+static void consult_listed(struct job *job, const struct grrl_closest *closest, unsigned from,
+                           unsigned to)
+{
+    enum { FAR = 8, NEAR = 4 };
+    const struct grrl_experience_state *states = job->store->states;
+    for (unsigned k = from; k < to + FAR; ++k) {
+        if (k < to) {
+            ask_for_state(&states[closest->state[k]]);
+        }
+        if (k >= from + FAR - NEAR && k < to + FAR - NEAR) {
+            ask_for_links(job->store, &states[closest->state[k - (FAR - NEAR)]]);
+        }
+        if (k >= from + FAR) {
+            consult_part(job, closest->state[k - FAR], closest->distance[k - FAR]);
+        }
+    }
+}
+
 /* The closest states first, so that the others need a search only for what is still open. */
-static void consult_parts(struct job *job, const struct grrl_recall_config *config,
-                          const struct grrl_experience_state *current, grrl_label places)
+static void consult_parts(struct job *job)
 {
     const struct grrl_experience_index *index = job->store->index;
     struct grrl_closest closest;
-    unsigned k = 0;
-    unsigned left = config->states < GRRL_RECALL_STATES ? config->states : GRRL_RECALL_STATES;
+    unsigned from = 0;
+    unsigned to = 0;
     unsigned reach = FARTHEST;
+    unsigned left =
+        job->config->states < GRRL_RECALL_STATES ? job->config->states : GRRL_RECALL_STATES;
     job->kind = GRRL_MATCH_MONOMORPHISM;
     job->steps = GRRL_RECALL_STEPS;
     if (left == 0 || !find_open(job)) {
         return;
     }
     if (index != NULL) {
-        reach = grrl_experience_index_reach(index, current);
+        reach = grrl_experience_index_reach(index, job->described);
     } else {
         grrl_closest_clear(&closest, left);
-        scan_states(job->store, current, &closest);
+        scan_states(job->store, job->described, &closest);
         left = closest.n;
     }
     for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
+        from = to;
         if (index != NULL) {
-            k = 0;
             grrl_closest_clear(&closest, left);
-            grrl_experience_index_find(index, current, d, &closest);
+            grrl_experience_index_find(index, job->described, d, &closest);
+            from = 0;
+            to = closest.n;
         }
-        for (; k < closest.n && closest.distance[k] == d; ++k) {
-            look_ahead(job->store, &closest, k);
-            consult_part(job, closest.state[k], d, config, current, places);
-            --left;
+        while (to < closest.n && closest.distance[to] == d) {
+            ++to;
         }
+        consult_listed(job, &closest, from, to);
+        left -= to - from;
     }
 }
 
@@ -452,14 +480,18 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
     if (store->n_states == 0 || !grrl_experience_describe(state, &current, NULL)) {
         return;
     }
-    grrl_label places = places_in_use(state);
-    struct job job = {.store = store, .current = state, .recall = recall};
+    struct job job = {.store = store,
+                      .config = config,
+                      .current = state,
+                      .described = &current,
+                      .places = places_in_use(state),
+                      .recall = recall};
     for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
         job.open[direction] = grrl_bits_below(state->n);
     }
     count_joints(&job);
-    consult_isomorphic(&job, config, &current, places);
+    consult_isomorphic(&job);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
-        consult_parts(&job, config, &current, places);
+        consult_parts(&job);
     }
 }

@@ -99,6 +99,7 @@ static bool looks_the_same(const struct side *a, const struct side *b)
 /* The domains, and the vertex with the fewest targets; false: some vertex has none. */
 static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
 {
+    /* a table: few machines shift the lanes of a vector by different amounts */
     static const uint32_t bit[32] = {
         1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
         1u << 8,  1u << 9,  1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15,
