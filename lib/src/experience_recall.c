@@ -65,6 +65,7 @@ static bool improves(const struct job *job, uint32_t experience,
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
+/* Fills in at_least. */
 static void count_joints(struct job *job)
 {
     for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
@@ -408,7 +409,8 @@ static void ask_for_links(const struct grrl_experience_store *store,
     }
 }
 
-/* Of thousands of states few are in a cache: they are asked for some states ahead of their turn. */
+/* Consults some of the list. Of thousands of states few are in a cache: the memory of each is asked
+ * for some states ahead. */
 static void consult_listed(struct job *job, const struct grrl_closest *closest, unsigned from,
                            unsigned to)
 {
@@ -432,8 +434,7 @@ static void consult_parts(struct job *job)
 {
     const struct grrl_experience_index *index = job->store->index;
     struct grrl_closest closest;
-    unsigned from = 0;
-    unsigned to = 0;
+    unsigned to = 0; /* so many of the list are done */
     unsigned reach = FARTHEST;
     unsigned left =
         job->config->states < GRRL_RECALL_STATES ? job->config->states : GRRL_RECALL_STATES;
@@ -450,13 +451,12 @@ static void consult_parts(struct job *job)
         left = closest.n;
     }
     for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
-        from = to;
         if (index != NULL) {
             grrl_closest_clear(&closest, left);
             grrl_experience_index_find(index, job->described, d, &closest);
-            from = 0;
-            to = closest.n;
+            to = 0;
         }
+        const unsigned from = to;
         while (to < closest.n && closest.distance[to] == d) {
             ++to;
         }
