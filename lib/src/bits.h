@@ -31,13 +31,14 @@ static inline uint8_t grrl_first_bit(uint32_t set)
 }
 
 /* Without a branch, and without the call that a builtin is on a machine with no instruction for it;
- * compilers know the pattern. */
-static inline unsigned grrl_bit_count(uint32_t set)
+ * in shifts and sums alone, which compilers turn into vector instructions. */
+static inline uint32_t grrl_bit_count(uint32_t set)
 {
     set -= set >> 1 & UINT32_C(0x55555555);
     set = (set & UINT32_C(0x33333333)) + (set >> 2 & UINT32_C(0x33333333));
     set = (set + (set >> 4)) & UINT32_C(0x0f0f0f0f);
-    return (set * UINT32_C(0x01010101)) >> 24;
+    set += set >> 8;
+    return (set + (set >> 16)) & 0x3fu;
 }
 
 /* Asks for memory that is wanted soon. */

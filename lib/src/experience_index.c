@@ -1,6 +1,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "closest.h"
 #include "experience_private.h"
 
 /* Links and joints of each type, the lowest counts of a signature. */
@@ -62,62 +63,10 @@ void grrl_experience_index_remove(struct grrl_experience_index *index,
     }
 }
 
-/* The lowest numbers so far, a heap once there are as many as wanted: the highest first. */
-struct lowest {
-    uint32_t *states;
-    unsigned n;
-    unsigned most;
-};
-
-/* Sinks the number at a place of a heap of n. */
-static void sink(uint32_t *heap, unsigned n, unsigned at)
-{
-    for (unsigned child = 2 * at + 1; child < n; child = 2 * at + 1) {
-        child += child + 1 < n && heap[child + 1] > heap[child];
-        if (heap[at] >= heap[child]) {
-            return;
-        }
-        uint32_t kept = heap[at];
-        heap[at] = heap[child];
-        heap[child] = kept;
-        at = child;
-    }
-}
-
-static void make_heap(struct lowest *lowest)
-{
-    for (unsigned at = lowest->n / 2; at-- > 0;) {
-        sink(lowest->states, lowest->n, at);
-    }
-}
-
-static void add_state(struct lowest *lowest, uint32_t state)
-{
-    if (lowest->n < lowest->most) {
-        lowest->states[lowest->n++] = state;
-        if (lowest->n == lowest->most) {
-            make_heap(lowest);
-        }
-    } else if (state < lowest->states[0]) {
-        lowest->states[0] = state;
-        sink(lowest->states, lowest->n, 0);
-    }
-}
-
-static void sort_states(struct lowest *lowest)
-{
-    make_heap(lowest);
-    for (unsigned end = lowest->n; end-- > 1;) {
-        uint32_t highest = lowest->states[0];
-        lowest->states[0] = lowest->states[end];
-        lowest->states[end] = highest;
-        sink(lowest->states, end, 0);
-    }
-}
-
 /* States of one size, all larger than the current one or all smaller. */
 static void search_cell(const struct grrl_experience_index *index, uint64_t size, bool larger,
-                        const struct grrl_experience_state *current, struct lowest *lowest)
+                        const struct grrl_experience_state *current, unsigned distance,
+                        struct grrl_closest *closest)
 {
     const uint64_t own = current->signature.word[0];
     const struct grrl_paths paths = current->paths;
@@ -126,36 +75,35 @@ static void search_cell(const struct grrl_experience_index *index, uint64_t size
         const struct grrl_experience_row *row = &index->rows[i];
         bool fits = larger ? grrl_experience_fits(own, &paths, row->counts, &row->paths)
                            : grrl_experience_fits(row->counts, &row->paths, own, &paths);
-        if (fits && (row->counts & SIZE_BYTES) == size) {
-            add_state(lowest, row->state);
+        if (fits && (row->counts & SIZE_BYTES) == size &&
+            grrl_closest_wants(closest, distance, row->state)) {
+            grrl_closest_add(closest, distance, row->state);
         }
     }
 }
 
-unsigned grrl_experience_index_find(const struct grrl_experience_index *index,
-                                    const struct grrl_experience_state *current, unsigned distance,
-                                    unsigned most, uint32_t *states)
+void grrl_experience_index_find(const struct grrl_experience_index *index,
+                                const struct grrl_experience_state *current, unsigned distance,
+                                struct grrl_closest *closest)
 {
-    struct lowest lowest = {states, 0, most};
     const unsigned n = current->n;
     const unsigned r = current->joints[GRRL_REVOLUTE];
     const unsigned p = current->joints[GRRL_PRISMATIC];
-    for (unsigned links = 0; links <= distance && most > 0; ++links) {
+    for (unsigned links = 0; links <= distance; ++links) {
         for (unsigned revolute = 0; links + revolute <= distance; ++revolute) {
             unsigned prismatic = distance - links - revolute;
             if (links <= n && revolute <= r && prismatic <= p) {
                 search_cell(index, size_of(n - links, r - revolute, p - prismatic), false, current,
-                            &lowest);
+                            distance, closest);
             }
             if (n + links <= index->most[0] && r + revolute <= index->most[1] &&
                 p + prismatic <= index->most[2]) {
                 search_cell(index, size_of(n + links, r + revolute, p + prismatic), true, current,
-                            &lowest);
+                            distance, closest);
             }
         }
     }
-    sort_states(&lowest);
-    return lowest.n;
+    grrl_closest_sort(closest);
 }
 
 unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,

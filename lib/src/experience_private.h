@@ -66,13 +66,12 @@ void grrl_experience_index_add(struct grrl_experience_index *index,
 void grrl_experience_index_remove(struct grrl_experience_index *index,
                                   const struct grrl_experience_state *state, uint32_t number);
 
-/*
- * States that could be a sub- or super-structure of the current one with so many links and joints
- * less or more, in the order of their numbers: if there are more than `most`, the lowest.
- */
-unsigned grrl_experience_index_find(const struct grrl_experience_index *index,
-                                    const struct grrl_experience_state *current, unsigned distance,
-                                    unsigned most, uint32_t *states);
+/* Adds to the closest states, and sorts them: those that could be a sub- or super-structure of the
+ * current one with so many links and joints less or more. */
+struct grrl_closest;
+void grrl_experience_index_find(const struct grrl_experience_index *index,
+                                const struct grrl_experience_state *current, unsigned distance,
+                                struct grrl_closest *closest);
 
 /* No state is farther than this. */
 unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,

@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "bits.h"
+#include "closest.h"
 #include "experience_private.h"
 
 /*
@@ -12,11 +13,15 @@
 /* One recall under way, and how it regards the stored state it has come to. */
 struct job {
     const struct grrl_experience_store *store;
+    const struct grrl_recall_config *config;
     const struct grrl_graph *current;
+    const struct grrl_experience_state *described; /* the current state as it would be stored, */
+    grrl_label places;                             /* and its properties in use, as mask bytes */
     struct grrl_recall *recall;
     uint32_t budget;                /* left for the stored state, */
     uint32_t steps;                 /* and for the sub-structures of the recall */
     uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
+    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MAX_LINKS + 1]; /* current links with so many joints */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of it */
@@ -26,10 +31,17 @@ struct job {
     struct grrl_recall_entry offer; /* level, distance and dropped of all its matches */
 };
 
-/* Current links for each stored link. */
+/* Current links for each link of the stored state. */
 struct binding {
     uint32_t to[GRRL_MAX_LINKS];
 };
+
+static void clear_binding(struct binding *binding, uint8_t n)
+{
+    for (uint8_t v = 0; v < n; ++v) {
+        binding->to[v] = 0;
+    }
+}
 
 /* Whether an experience of the offered closeness is closer than what the entry has. */
 static bool improves(const struct job *job, uint32_t experience,
@@ -53,38 +65,51 @@ static bool improves(const struct job *job, uint32_t experience,
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
-/* Whether stored link v could be bound to current link c, as far as label and degrees tell. */
-static bool could_bind(const struct job *job, uint8_t v, uint8_t c)
+/* Fills in at_least. */
+static void count_joints(struct job *job)
 {
-    const struct grrl_graph *stored = &job->graph;
-    if (grrl_label_masked(stored->label[v], job->mask) !=
-        grrl_label_masked(job->current->label[c], job->mask)) {
-        return false;
-    }
     for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
-        unsigned degree_v = grrl_bit_count(stored->joined[type][v]);
-        unsigned degree_c = grrl_bit_count(job->current->joined[type][c]);
-        if (degree_v != degree_c &&
-            (job->kind == GRRL_MATCH_ISOMORPHISM || (degree_v < degree_c) != job->forth)) {
-            return false;
+        for (uint8_t c = 0; c < job->current->n; ++c) {
+            unsigned degree = grrl_bit_count(job->current->joined[type][c]);
+            for (unsigned k = 0; k <= degree; ++k) {
+                job->at_least[type][k] |= grrl_bit(c);
+            }
         }
     }
-    return true;
+}
+
+/* Current links that stored link v could be bound to, as far as degrees tell. */
+static uint32_t could_bind(const struct job *job, uint8_t v)
+{
+    uint32_t links = UINT32_MAX;
+    for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
+        unsigned degree = grrl_bit_count(job->graph.joined[type][v]);
+        if (job->forth) {
+            links &= job->at_least[type][degree];
+        }
+        if (!job->forth || job->kind == GRRL_MATCH_ISOMORPHISM) {
+            links &= ~job->at_least[type][degree + 1];
+        }
+    }
+    return links;
 }
 
 /* The bindings that would bring a closer experience for some action; false if there are none. */
 static bool wanted_bindings(const struct job *job, struct binding *wanted)
 {
-    memset(wanted, 0, sizeof *wanted);
+    clear_binding(wanted, job->graph.n);
     bool any = false;
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
-        for (uint32_t open = job->open[experience->direction]; open != 0; open &= open - 1u) {
-            uint8_t c = grrl_first_bit(open);
-            if (improves(job, i, &job->recall->entry[c][experience->direction]) &&
-                could_bind(job, experience->link, c)) {
-                wanted->to[experience->link] |= grrl_bit(c);
+        const uint8_t v = experience->link;
+        const grrl_label label = grrl_label_masked(job->graph.label[v], job->mask);
+        uint32_t links = job->open[experience->direction] & could_bind(job, v);
+        for (; links != 0; links &= links - 1u) {
+            uint8_t c = grrl_first_bit(links);
+            if (grrl_label_masked(job->current->label[c], job->mask) == label &&
+                improves(job, i, &job->recall->entry[c][experience->direction])) {
+                wanted->to[v] |= grrl_bit(c);
                 any = true;
             }
         }
@@ -143,7 +168,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
 
 static void find_bindings(struct job *job, const struct binding *wanted, struct binding *found)
 {
-    memset(found, 0, sizeof *found);
+    clear_binding(found, job->graph.n);
     struct grrl_match match;
     begin(job, &match);
     for (int i = 0; i < MAPPINGS; ++i) {
@@ -212,9 +237,9 @@ static grrl_label drop_last(grrl_label places)
 }
 
 /* Isomorphic without properties: ever fewer of them. */
-static void consult_relaxed(struct job *job, grrl_label current_places)
+static void consult_relaxed(struct job *job)
 {
-    grrl_label places = current_places | places_in_use(&job->graph);
+    grrl_label places = job->places | places_in_use(&job->graph);
     job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_RELAXED};
     while (places != 0) {
         places = drop_last(places);
@@ -225,16 +250,16 @@ static void consult_relaxed(struct job *job, grrl_label current_places)
 }
 
 /* With all properties, then with none. */
-static void consult_substructure(struct job *job, const struct grrl_experience_state *current,
-                                 grrl_label current_places, uint8_t distance)
+static void consult_substructure(struct job *job, uint8_t distance)
 {
-    grrl_label places = current_places | places_in_use(&job->graph);
+    grrl_label places = job->places | places_in_use(&job->graph);
     job->offer =
         (struct grrl_recall_entry){.level = GRRL_RECALL_SUBSTRUCTURE, .distance = distance};
     job->mask = GRRL_ALL_PROPERTIES;
     const struct grrl_signature *stored = &job->stored->signature;
-    if (job->forth ? grrl_signature_within(stored, &current->signature, false)
-                   : grrl_signature_within(&current->signature, stored, false)) {
+    const struct grrl_signature *current = &job->described->signature;
+    if (job->forth ? grrl_signature_within(stored, current, false)
+                   : grrl_signature_within(current, stored, false)) {
         consult(job);
     }
     for (; places != 0; places = drop_last(places)) {
@@ -246,26 +271,26 @@ static void consult_substructure(struct job *job, const struct grrl_experience_s
     }
 }
 
-static void take_state(struct job *job, uint32_t state, const struct grrl_recall_config *config)
+static void take_state(struct job *job, uint32_t state)
 {
     job->stored = &job->store->states[state];
-    job->budget = config->budget;
+    job->budget = job->config->budget;
     grrl_experience_graph(job->stored, &job->graph);
 }
 
-static void consult_isomorphic(struct job *job, const struct grrl_recall_config *config,
-                               const struct grrl_experience_state *current, grrl_label places)
+static void consult_isomorphic(struct job *job)
 {
+    const struct grrl_experience_state *current = job->described;
     job->kind = GRRL_MATCH_ISOMORPHISM;
     job->forth = true;
     uint32_t exact = grrl_experience_find_state(job->store, current);
     if (exact != GRRL_NO_STATE) {
-        take_state(job, exact, config);
+        take_state(job, exact);
         job->mask = GRRL_ALL_PROPERTIES;
         job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
         consult(job);
     }
-    if (config->deepest < GRRL_RECALL_RELAXED) {
+    if (job->config->deepest < GRRL_RECALL_RELAXED) {
         return;
     }
     uint32_t shape = current->key[GRRL_TABLE_SHAPE];
@@ -275,8 +300,8 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
         const struct grrl_experience_state *stored = &job->store->states[i];
         if (stored->n == current->n &&
             memcmp(stored->joints, current->joints, sizeof current->joints) == 0) {
-            take_state(job, i, config);
-            consult_relaxed(job, places);
+            take_state(job, i);
+            consult_relaxed(job);
         }
     }
 }
@@ -286,59 +311,44 @@ static void consult_isomorphic(struct job *job, const struct grrl_recall_config 
 /* No two states differ by more links and joints. */
 enum { FARTHEST = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
 
-_Static_assert(FARTHEST <= UINT8_MAX, "distances are bytes");
+_Static_assert(FARTHEST <= UINT8_MAX && GRRL_MAX_JOINTS <= INT8_MAX,
+               "distances are bytes, and signatures count all links and joints");
 
-/* The states closest to the current one, as far as signatures tell. */
-struct nearest {
-    unsigned n;
-    uint32_t state[GRRL_RECALL_STATES];
-    uint8_t distance[GRRL_RECALL_STATES];
-};
-
-static bool is_part(const struct grrl_experience_state *part,
-                    const struct grrl_experience_state *whole)
+/* Links and joints, as a signature has them. */
+static unsigned size_of(uint64_t counts)
 {
-    return grrl_experience_fits(part->signature.word[0], &part->paths, whole->signature.word[0],
-                                &whole->paths);
+    return (unsigned)((counts & 0xffu) + (counts >> 8 & 0xffu) + (counts >> 16 & 0xffu));
 }
 
-/* Links and joints that only one of the two has if one is a sub-structure of the other. With equal
- * counts of them they are isomorphic or nothing: not wanted here, as is what does not fit: 0. */
-static unsigned distance_of(const struct grrl_experience_state *stored,
-                            const struct grrl_experience_state *current)
-{
-    const unsigned size = (unsigned)stored->n + stored->joints[0] + stored->joints[1];
-    const unsigned own = (unsigned)current->n + current->joints[0] + current->joints[1];
-    if (size < own) {
-        return is_part(stored, current) ? own - size : 0;
-    }
-    return size > own && is_part(current, stored) ? size - own : 0;
-}
+_Static_assert(offsetof(struct grrl_experience_state, signature.word[1]) <= 32,
+               "half a cache line is all that a scan reads of a state");
 
-/* Without an index: all that fit if there is room, else those up to the distance at which there no
- * longer is, of the last distance those with the lowest numbers. */
+/* Without an index: of all states that fit, in one pass. With as many links and joints as the
+ * current one a state is isomorphic or nothing: not wanted here. */
 static void scan_states(const struct grrl_experience_store *store,
-                        const struct grrl_experience_state *current, uint32_t room,
-                        struct nearest *nearest)
+                        const struct grrl_experience_state *current, struct grrl_closest *closest)
 {
-    uint32_t count[FARTHEST + 1] = {0};
-    unsigned last = 0;
+    enum { AHEAD = 16 }; /* a state takes a few nanoseconds, memory a hundred */
+    const uint64_t own_counts = current->signature.word[0];
+    const unsigned own = size_of(own_counts);
     for (uint32_t i = 0; i < store->n_states; ++i) {
-        ++count[distance_of(&store->states[i], current)];
-    }
-    while (last < FARTHEST && count[last + 1] <= room) {
-        room -= count[++last];
-    }
-    nearest->n = 0;
-    for (uint32_t i = 0; i < store->n_states; ++i) {
-        unsigned distance = distance_of(&store->states[i], current);
-        if (distance == 0 || distance > last + 1 || (distance == last + 1 && room == 0)) {
+        if (i + AHEAD < store->n_states) {
+            grrl_prefetch(&store->states[i + AHEAD]);
+        }
+        const struct grrl_experience_state *stored = &store->states[i];
+        const uint64_t counts = stored->signature.word[0];
+        const unsigned size = size_of(counts);
+        const bool larger = size > own;
+        const unsigned distance = larger ? size - own : own - size;
+        if (distance == 0 || !grrl_closest_wants(closest, distance, i)) {
             continue;
         }
-        room -= distance == last + 1;
-        nearest->state[nearest->n] = i;
-        nearest->distance[nearest->n++] = (uint8_t)distance;
+        if (larger ? grrl_experience_fits(own_counts, &current->paths, counts, &stored->paths)
+                   : grrl_experience_fits(counts, &stored->paths, own_counts, &current->paths)) {
+            grrl_closest_add(closest, distance, i);
+        }
     }
+    grrl_closest_sort(closest);
 }
 
 /* What states of the next distance could still improve: what has no entry. False: nothing. */
@@ -367,69 +377,91 @@ static bool knows_open_direction(const struct job *job, const struct grrl_experi
     return false;
 }
 
-/* Of thousands of states few are in a cache: asks for the next ones, their first lines before what
- * these lead to. */
-static void look_ahead(const struct grrl_experience_store *store, const struct nearest *nearest,
-                       unsigned k)
-{
-    enum { FAR = 8, NEAR = 4, LINE_BYTES = 64 };
-    if (k + FAR < nearest->n) {
-        const struct grrl_experience_state *state = &store->states[nearest->state[k + FAR]];
-        grrl_prefetch(state);
-        grrl_prefetch(&state->n);
-    }
-    if (k + NEAR < nearest->n) {
-        const struct grrl_experience_state *state = &store->states[nearest->state[k + NEAR]];
-        grrl_prefetch(&store->experiences[state->first]);
-        grrl_prefetch(state->edge);
-        for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
-            grrl_prefetch(&state->label[i]);
-        }
-    }
-}
-
-static void consult_part(struct job *job, uint32_t state, unsigned distance,
-                         const struct grrl_recall_config *config,
-                         const struct grrl_experience_state *current, grrl_label places)
+static void consult_part(struct job *job, uint32_t state, uint8_t distance)
 {
     if (!knows_open_direction(job, &job->store->states[state])) {
         return;
     }
-    take_state(job, state, config);
+    take_state(job, state);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
-    job->forth = is_part(job->stored, current);
-    consult_substructure(job, current, places, (uint8_t)distance);
+    job->forth =
+        size_of(job->stored->signature.word[0]) < size_of(job->described->signature.word[0]);
+    consult_substructure(job, distance);
     job->steps -= granted - job->budget;
 }
 
+/* Asks for the first lines of a state, then for what these lead to. */
+static void ask_for_state(const struct grrl_experience_state *state)
+{
+    grrl_prefetch(state);
+    grrl_prefetch(&state->first);
+}
+
+static void ask_for_links(const struct grrl_experience_store *store,
+                          const struct grrl_experience_state *state)
+{
+    enum { LINE_BYTES = 64 };
+    grrl_prefetch(&store->experiences[state->first]);
+    grrl_prefetch(state->edge);
+    for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
+        grrl_prefetch(&state->label[i]);
+    }
+}
+
+/* Consults some of the list. Of thousands of states few are in a cache: the memory of each is asked
+ * for some states ahead. */
+static void consult_listed(struct job *job, const struct grrl_closest *closest, unsigned from,
+                           unsigned to)
+{
+    enum { FAR = 8, NEAR = 4 };
+    const struct grrl_experience_state *states = job->store->states;
+    for (unsigned k = from; k < to + FAR; ++k) {
+        if (k < to) {
+            ask_for_state(&states[closest->state[k]]);
+        }
+        if (k >= from + FAR - NEAR && k < to + FAR - NEAR) {
+            ask_for_links(job->store, &states[closest->state[k - (FAR - NEAR)]]);
+        }
+        if (k >= from + FAR) {
+            consult_part(job, closest->state[k - FAR], closest->distance[k - FAR]);
+        }
+    }
+}
+
 /* The closest states first, so that the others need a search only for what is still open. */
-static void consult_parts(struct job *job, const struct grrl_recall_config *config,
-                          const struct grrl_experience_state *current, grrl_label places)
+static void consult_parts(struct job *job)
 {
     const struct grrl_experience_index *index = job->store->index;
-    struct nearest nearest;
+    struct grrl_closest closest;
+    unsigned to = 0; /* so many of the list are done */
+    unsigned reach = FARTHEST;
+    unsigned left =
+        job->config->states < GRRL_RECALL_STATES ? job->config->states : GRRL_RECALL_STATES;
     job->kind = GRRL_MATCH_MONOMORPHISM;
     job->steps = GRRL_RECALL_STEPS;
-    unsigned left = config->states < GRRL_RECALL_STATES ? config->states : GRRL_RECALL_STATES;
-    if (index == NULL) {
-        scan_states(job->store, current, left, &nearest);
-        left = nearest.n;
+    if (left == 0 || !find_open(job)) {
+        return;
     }
-    unsigned reach = index == NULL ? FARTHEST : grrl_experience_index_reach(index, current);
+    if (index != NULL) {
+        reach = grrl_experience_index_reach(index, job->described);
+    } else {
+        grrl_closest_clear(&closest, left);
+        scan_states(job->store, job->described, &closest);
+        left = closest.n;
+    }
     for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
         if (index != NULL) {
-            nearest.n = grrl_experience_index_find(index, current, d, left, nearest.state);
+            grrl_closest_clear(&closest, left);
+            grrl_experience_index_find(index, job->described, d, &closest);
+            to = 0;
         }
-        for (unsigned k = 0; k < nearest.n; ++k) {
-            if (index != NULL) {
-                look_ahead(job->store, &nearest, k);
-            }
-            if (index != NULL || nearest.distance[k] == d) {
-                consult_part(job, nearest.state[k], d, config, current, places);
-                --left;
-            }
+        const unsigned from = to;
+        while (to < closest.n && closest.distance[to] == d) {
+            ++to;
         }
+        consult_listed(job, &closest, from, to);
+        left -= to - from;
     }
 }
 
@@ -448,13 +480,18 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
     if (store->n_states == 0 || !grrl_experience_describe(state, &current, NULL)) {
         return;
     }
-    grrl_label places = places_in_use(state);
-    struct job job = {.store = store, .current = state, .recall = recall};
+    struct job job = {.store = store,
+                      .config = config,
+                      .current = state,
+                      .described = &current,
+                      .places = places_in_use(state),
+                      .recall = recall};
     for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
         job.open[direction] = grrl_bits_below(state->n);
     }
-    consult_isomorphic(&job, config, &current, places);
+    count_joints(&job);
+    consult_isomorphic(&job);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
-        consult_parts(&job, config, &current, places);
+        consult_parts(&job);
     }
 }

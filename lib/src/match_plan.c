@@ -31,8 +31,8 @@ void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *gr
     for (unsigned i = 0; i < graph->n; i++)
         plan->label[i] = grrl_label_masked(graph->label[i], mask);
     for (unsigned i = 0; i < graph->n; i++) {
-        uint32_t revolute = grrl_match_count(graph->joined[GRRL_REVOLUTE][i]);
-        uint32_t prismatic = grrl_match_count(graph->joined[GRRL_PRISMATIC][i]);
+        uint32_t revolute = grrl_bit_count(graph->joined[GRRL_REVOLUTE][i]);
+        uint32_t prismatic = grrl_bit_count(graph->joined[GRRL_PRISMATIC][i]);
         ends[GRRL_REVOLUTE] += revolute;
         ends[GRRL_PRISMATIC] += prismatic;
         plan->growing[i] = revolute | prismatic << 8;

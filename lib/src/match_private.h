@@ -16,16 +16,6 @@ static inline uint32_t grrl_match_neighbours(const struct grrl_graph *graph, uin
     return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
 }
 
-/* grrl_bit_count in shifts and sums alone, which compilers turn into vector instructions. */
-static inline uint32_t grrl_match_count(uint32_t x)
-{
-    x -= x >> 1 & UINT32_C(0x55555555);
-    x = (x & UINT32_C(0x33333333)) + (x >> 2 & UINT32_C(0x33333333));
-    x = (x + (x >> 4)) & UINT32_C(0x0f0f0f0f);
-    x += x >> 8;
-    return (x + (x >> 16)) & 0x3fu;
-}
-
 /*
  * One mapping as in grrl_match_find, by a search that needs nothing made beforehand.
  * GRRL_ERR_UNDECIDED: the budget is used up.

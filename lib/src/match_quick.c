@@ -74,19 +74,18 @@ static uint32_t count_ends(const struct grrl_graph *graph, int type)
 {
     uint32_t ends = 0;
     for (unsigned i = 0; i < graph->n; i++)
-        ends += grrl_match_count(graph->joined[type][i]);
+        ends += grrl_bit_count(graph->joined[type][i]);
     return ends;
 }
 
 /* Whether as many vertices have each look, and there are as many joints of each type. */
 static bool looks_the_same(const struct side *a, const struct side *b)
 {
-    uint32_t differing = grrl_match_count(a->alike) ^ grrl_match_count(b->alike);
+    uint32_t differing = grrl_bit_count(a->alike) ^ grrl_bit_count(b->alike);
     for (int k = 0; k < LOOKS; k++) {
+        differing |= grrl_bit_count(a->look[k] & a->alike) ^ grrl_bit_count(b->look[k] & b->alike);
         differing |=
-            grrl_match_count(a->look[k] & a->alike) ^ grrl_match_count(b->look[k] & b->alike);
-        differing |=
-            grrl_match_count(a->look[k] & ~a->alike) ^ grrl_match_count(b->look[k] & ~b->alike);
+            grrl_bit_count(a->look[k] & ~a->alike) ^ grrl_bit_count(b->look[k] & ~b->alike);
     }
     if (differing != 0)
         return false;
@@ -99,6 +98,7 @@ static bool looks_the_same(const struct side *a, const struct side *b)
 /* The domains, and the vertex with the fewest targets; false: some vertex has none. */
 static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
 {
+    /* a table: few machines shift the lanes of a vector by different amounts */
     static const uint32_t bit[32] = {
         1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
         1u << 8,  1u << 9,  1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15,
@@ -117,7 +117,7 @@ static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
             domain &= exact ? target->look[k] ^ has_not : target->look[k] | has_not;
         }
         quick->domain[v] = domain;
-        int32_t score = (int32_t)(grrl_match_count(domain) << 8 | v);
+        int32_t score = (int32_t)(grrl_bit_count(domain) << 8 | v);
         fewest = score < fewest ? score : fewest;
     }
     *first = (uint8_t)(fewest & 0xff);

@@ -38,16 +38,16 @@ enum { GRRL_EXPERIENCE_TABLES = 2 };
 /* At most 512 bytes for 32 links and 64 joints, with its share of the index. */
 struct grrl_experience_state {
     /* private */
+    struct grrl_paths paths; /* first, with the first word of the signature: what a scan reads */
+    uint8_t n;               /* links */
+    uint8_t joints[GRRL_JOINT_TYPES]; /* of each type */
+    struct grrl_signature signature;
     uint32_t head[GRRL_EXPERIENCE_TABLES];  /* first state of the bucket with this state's number */
     uint32_t chain[GRRL_EXPERIENCE_TABLES]; /* next state of the bucket this state is in */
     uint32_t key[GRRL_EXPERIENCE_TABLES];   /* hash of the graph, all properties or none */
     uint32_t experiences;                   /* that refer to this state, at least one */
     uint32_t first;                         /* of them */
-    struct grrl_signature signature;
-    struct grrl_paths paths;
-    uint8_t n;                        /* links */
-    uint8_t joints[GRRL_JOINT_TYPES]; /* of each type */
-    uint16_t edge[GRRL_MAX_JOINTS];   /* canonical: type, link and lower link, 5 bits a link */
+    uint16_t edge[GRRL_MAX_JOINTS]; /* canonical: type, link and lower link, 5 bits a link */
     grrl_label label[GRRL_MAX_LINKS];
 };
 
