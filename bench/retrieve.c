@@ -128,7 +128,8 @@ static void run_queries(struct setup *setup, enum grrl_recall_level deepest, uin
                         const char *level, enum query kind)
 {
     static double spent[N_QUERIES];
-    const struct grrl_recall_config config = {deepest, GRRL_MATCH_BUDGET, states};
+    const struct grrl_recall_config config = {
+        .deepest = deepest, .budget = GRRL_MATCH_BUDGET, .states = states};
     double known = 0;
     for (int i = 0; i < N_QUERIES; i++) {
         struct grrl_graph graph;

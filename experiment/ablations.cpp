@@ -45,6 +45,8 @@ void add_paper(std::vector<Policy> &table)
     } rows[] = {
         {"exact", "nothing but the very same structure is recalled",
          [](grrl_learner_config &c) { c.policy.recall.deepest = GRRL_RECALL_EXACT; }},
+        {"strict", "no property is ever dropped",
+         [](grrl_learner_config &c) { c.policy.recall.strict = true; }},
         {"no-sub", "no sub-structures: same structure, properties may be dropped",
          [](grrl_learner_config &c) { c.policy.recall.deepest = GRRL_RECALL_RELAXED; }},
         {"no-phi", "no exploration by phi: the best of the known actions, if any is",

@@ -265,7 +265,7 @@ static void consult_substructure(struct job *job, uint8_t distance)
     for (; places != 0; places = drop_last(places)) {
         ++job->offer.dropped;
     }
-    if (job->offer.dropped > 0) {
+    if (job->offer.dropped > 0 && !job->config->strict) {
         job->mask = GRRL_NO_PROPERTIES;
         consult(job);
     }
@@ -290,7 +290,7 @@ static void consult_isomorphic(struct job *job)
         job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
         consult(job);
     }
-    if (job->config->deepest < GRRL_RECALL_RELAXED) {
+    if (job->config->deepest < GRRL_RECALL_RELAXED || job->config->strict) {
         return;
     }
     uint32_t shape = current->key[GRRL_TABLE_SHAPE];

@@ -18,6 +18,7 @@
 #ifndef GRRL_EXPERIENCE_H
 #define GRRL_EXPERIENCE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "grrl/canonical.h"
@@ -140,6 +141,7 @@ struct grrl_recall_config {
     enum grrl_recall_level deepest; /* GRRL_RECALL_SUBSTRUCTURE: everything */
     uint32_t budget;                /* search steps for one stored state, >= 1 */
     uint32_t states; /* to search for sub-structures, the closest; 1 to GRRL_RECALL_STATES */
+    bool strict;     /* no property is ever dropped */
 };
 
 /* Serialised reading and writing: return 0 when all `size` bytes were transferred. */
