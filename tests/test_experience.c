@@ -18,8 +18,8 @@ enum { STATES = 40, EXPERIENCES = 120 };
 static struct grrl_experience_state states[STATES];
 static struct grrl_experience experiences[EXPERIENCES];
 
-static const struct grrl_recall_config everything = {GRRL_RECALL_SUBSTRUCTURE, GRRL_MATCH_BUDGET,
-                                                     GRRL_RECALL_STATES};
+static const struct grrl_recall_config everything = {
+    .deepest = GRRL_RECALL_SUBSTRUCTURE, .budget = GRRL_MATCH_BUDGET, .states = GRRL_RECALL_STATES};
 
 static void init(struct grrl_experience_store *store, uint32_t n_states, uint32_t n_experiences)
 {
@@ -437,7 +437,7 @@ static void the_state_used_longest_ago_makes_room(void **state)
     assert_int_equal(store.n_states, 2);
     assert_int_equal(store.n_experiences, 3);
     assert_int_equal(store.evictions, 2);
-    struct grrl_recall_config exact = {GRRL_RECALL_EXACT, 100, 1};
+    struct grrl_recall_config exact = {.deepest = GRRL_RECALL_EXACT, .budget = 100, .states = 1};
     struct grrl_recall recall;
     grrl_experience_recall(&store, &b, &exact, &recall);
     assert_int_equal(recall.entry[0][1].experience, GRRL_NO_EXPERIENCE);

@@ -123,8 +123,9 @@ static void a_loaded_store_goes_on_like_the_first(void **state)
     assert_int_equal(load(&copy, &file), GRRL_OK);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 2);
-    const struct grrl_recall_config config = {GRRL_RECALL_SUBSTRUCTURE, GRRL_MATCH_BUDGET,
-                                              GRRL_RECALL_STATES};
+    const struct grrl_recall_config config = {.deepest = GRRL_RECALL_SUBSTRUCTURE,
+                                              .budget = GRRL_MATCH_BUDGET,
+                                              .states = GRRL_RECALL_STATES};
     for (int i = 0; i < 100; ++i) {
         struct grrl_graph graph = random_graph(&random);
         static struct grrl_recall a, b;
@@ -303,7 +304,8 @@ static void damage_with_a_right_crc_harms_nothing(void **state)
         if (load(&copy, &second) == GRRL_OK) {
             check_store(&copy.store);
             struct grrl_graph graph = random_graph(&random);
-            const struct grrl_recall_config config = {GRRL_RECALL_SUBSTRUCTURE, 1000, 64};
+            const struct grrl_recall_config config = {
+                .deepest = GRRL_RECALL_SUBSTRUCTURE, .budget = 1000, .states = 64};
             static struct grrl_recall recall;
             grrl_experience_recall(&copy.store, &graph, &config, &recall);
         } else {
