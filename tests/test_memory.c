@@ -53,6 +53,8 @@ static const struct size sizes[] = {
     SIZE(grrl_perception_keyframe),
     SIZE(grrl_perception_pose),
     SIZE(grrl_perception),
+    SIZE(grrl_noise_track),
+    SIZE(grrl_noise),
     SIZE(grrl_trajectory_config),
     SIZE(grrl_trajectory),
     SIZE(grrl_trajectory_model),
