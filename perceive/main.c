@@ -234,6 +234,7 @@ static int report_model(const struct grrl_perceive_options *options,
         return fail(grrl_status_text(status));
     double per_metre = 1.0 / (double)unit.metres;
     struct grrl_report report = {.model = model,
+                                 .perception = &perception,
                                  .counts = &perception.counts,
                                  .term = term,
                                  .unit = unit.name,

@@ -46,6 +46,7 @@ static const struct size sizes[] = {
     SIZE(grrl_perception_config),
     SIZE(grrl_body),
     SIZE(grrl_joint),
+    SIZE(grrl_pair),
     SIZE(grrl_model),
     SIZE(grrl_perception_counts),
     SIZE(grrl_perception_sum),
