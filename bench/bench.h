@@ -86,6 +86,7 @@ double bench_build(const struct bench_peer *peer, uint8_t links);
 int bench_match(bool json, unsigned n_pairs);
 int bench_retrieve(bool json);
 int bench_evict(bool json);
+int bench_perceive(bool json);
 
 #ifdef __cplusplus
 }

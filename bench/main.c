@@ -6,12 +6,13 @@
 #include "bench.h"
 
 static const char usage[] =
-    "usage: grrl-bench match|retrieve|evict [--json] [--pairs N]\n"
+    "usage: grrl-bench match|retrieve|evict|perceive [--json] [--pairs N]\n"
     "\n"
     "match     nanoseconds a query for pairs of structures of 4 to 32 links: the library with and\n"
     "          without stored plans, and the peers it was built with\n"
     "retrieve  nanoseconds a query among 1000 and 100000 stored states\n"
     "evict     the share of updates that a full store knows the experience of\n"
+    "perceive  milliseconds of perception by links, features and keyframes\n"
     "\n"
     "  --json     one JSON array instead of a table\n"
     "  --pairs N  pairs a case, 1 to 256 (64); match only\n"
@@ -48,6 +49,8 @@ int main(int argc, char **argv)
         return bench_retrieve(json);
     if (command != NULL && strcmp(command, "evict") == 0)
         return bench_evict(json);
+    if (command != NULL && strcmp(command, "perceive") == 0)
+        return bench_perceive(json);
     (void)fprintf(stderr, "grrl-bench: say what to measure\n%s", usage);
     return 2;
 }

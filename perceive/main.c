@@ -129,21 +129,48 @@ static struct grrl_perception_config configure(const struct grrl_perceive_option
     return config;
 }
 
-/*
- * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. The last frame shows where all has come to lie.
- */
-static enum grrl_status observe(struct grrl_tracks *tracks, struct unit unit)
+static void to_metres(struct grrl_tracks *tracks, struct unit unit)
 {
     for (size_t i = 0; i < tracks->n_points; i++) {
         tracks->x[i] *= unit.metres;
         tracks->y[i] *= unit.metres;
     }
+}
+
+static struct grrl_frame frame_of(const struct grrl_tracks *tracks, size_t i)
+{
+    const struct grrl_tracks_frame *in = &tracks->frame[i];
+    return (struct grrl_frame){in->n, tracks->id + in->first, tracks->x + in->first,
+                               tracks->y + in->first};
+}
+
+/* What the points scatter, of all frames: a file does not tell when things were at rest. */
+static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
+{
+    static struct grrl_noise noise;
+    grrl_noise_init(&noise);
     for (size_t i = 0; i < tracks->n_frames; i++) {
-        const struct grrl_tracks_frame *in = &tracks->frame[i];
-        struct grrl_frame frame = {in->n, tracks->id + in->first, tracks->x + in->first,
-                                   tracks->y + in->first};
-        bool pushing = in->pushing && i + 1 < tracks->n_frames;
+        struct grrl_frame frame = frame_of(tracks, i);
+        grrl_noise_observe(&noise, &frame);
+    }
+    enum grrl_status status = grrl_noise_estimate(&noise, noise_m);
+    if (status == GRRL_ERR_NONE)
+        (void)fail("--noise auto: too few points that are seen in three frames in a row; give "
+                   "--noise X");
+    else if (status != GRRL_OK)
+        (void)fail("--noise auto: the points do not scatter, or are rounded; give --noise X");
+    return status == GRRL_OK;
+}
+
+/*
+ * The recording as pushes: frames at rest are averaged, others become keyframes where something has
+ * moved enough. The last frame shows where all has come to lie.
+ */
+static enum grrl_status observe(const struct grrl_tracks *tracks)
+{
+    for (size_t i = 0; i < tracks->n_frames; i++) {
+        struct grrl_frame frame = frame_of(tracks, i);
+        bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
         grrl_perception_observe(&perception, &frame, pushing);
     }
     return grrl_perception_update(&perception);
@@ -207,6 +234,7 @@ static int report_model(const struct grrl_perceive_options *options,
         return fail(grrl_status_text(status));
     double per_metre = 1.0 / (double)unit.metres;
     struct grrl_report report = {.model = model,
+                                 .perception = &perception,
                                  .counts = &perception.counts,
                                  .term = term,
                                  .unit = unit.name,
@@ -224,6 +252,19 @@ static int report_model(const struct grrl_perceive_options *options,
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
+static int perceive_with(const struct grrl_perception_config *config,
+                         const struct grrl_perceive_options *options,
+                         const struct grrl_tracks *tracks, struct unit unit, const char *profile)
+{
+    enum grrl_status status = grrl_perception_init(&perception, config);
+    status = status == GRRL_OK ? observe(tracks) : status;
+    if (status == GRRL_ERR_NONE)
+        return fail("no point is visible in any frame");
+    if (status != GRRL_OK)
+        return fail(grrl_status_text(status));
+    return report_model(options, tracks, unit, profile);
+}
+
 static int perceive_tracks(const struct grrl_perceive_options *options)
 {
     struct grrl_tracks tracks;
@@ -237,14 +278,9 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
                    "--unit px");
     } else {
         struct grrl_perception_config config = configure(options, unit, &profile);
-        enum grrl_status status = grrl_perception_init(&perception, &config);
-        status = status == GRRL_OK ? observe(&tracks, unit) : status;
-        if (status == GRRL_ERR_NONE)
-            (void)fail("no point is visible in any frame");
-        else if (status != GRRL_OK)
-            (void)fail(grrl_status_text(status));
-        else
-            result = report_model(options, &tracks, unit, profile);
+        to_metres(&tracks, unit);
+        if (!options->noise_from_points || measure_noise(&tracks, &config.noise_m))
+            result = perceive_with(&config, options, &tracks, unit, profile);
     }
     grrl_tracks_free(&tracks);
     return result;

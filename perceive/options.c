@@ -38,7 +38,8 @@ static const struct {
     {OPT_HANDLE, "handle", "FILE", "tell by the trajectory of one point what moves it"},
     {OPT_UNIT, "unit", "m|mm|px", "of the positions (m; px for the columns x_px and y_px)"},
     {OPT_PROFILE, "profile", "tracker|camera", "what the noise is like (camera for px)"},
-    {OPT_NOISE, "noise", "X", "standard deviation of a point, in the file's unit"},
+    {OPT_NOISE, "noise", "X|auto",
+     "standard deviation of a point, in the file's unit; auto: measure"},
     {OPT_JSON, "json", NULL, "print JSON"},
     {OPT_SVG, "svg", "FILE", "draw features, bodies and joints"},
     {OPT_HELP, "help", NULL, "print this text"},
@@ -108,12 +109,14 @@ static bool parse_profile(const char *text, enum grrl_profile *profile)
     return *profile != GRRL_PROFILE_OF_UNIT || bad("profile", text, "tracker or camera");
 }
 
-static bool parse_noise(const char *text, float *noise)
+static bool parse_noise(const char *text, struct grrl_perceive_options *options)
 {
     char *end;
-    *noise = strtof(text, &end);
-    return (end != text && *end == '\0' && isfinite(*noise) && *noise > 0.0f) ||
-           bad("noise", text, "a number above 0");
+    options->noise_from_points = strcmp(text, "auto") == 0;
+    options->noise = options->noise_from_points ? 0.0f : strtof(text, &end);
+    return options->noise_from_points ||
+           (end != text && *end == '\0' && isfinite(options->noise) && options->noise > 0.0f) ||
+           bad("noise", text, "a number above 0, or auto");
 }
 
 static bool parse_trial(const char *text, int32_t *trial)
@@ -143,7 +146,7 @@ static bool take(enum option_id id, const char *text, struct grrl_perceive_optio
     case OPT_PROFILE:
         return parse_profile(text, &options->profile);
     case OPT_NOISE:
-        return parse_noise(text, &options->noise);
+        return parse_noise(text, options);
     case OPT_JSON:
         options->json = true;
         return true;
@@ -168,6 +171,9 @@ static bool consistent(const struct grrl_perceive_options *options)
     if (options->handle != NULL &&
         (options->svg != NULL || options->profile != GRRL_PROFILE_OF_UNIT))
         return complain("--svg and --profile do not go with --handle FILE");
+    if (options->handle != NULL && options->noise_from_points)
+        return complain("--noise auto does not go with --handle FILE: what bends a trajectory is "
+                        "more than noise");
     if (options->handle != NULL && options->unit == GRRL_UNIT_PX)
         return complain("--handle FILE is in m or mm");
     if (options->profile == GRRL_PROFILE_CAMERA &&

@@ -15,7 +15,8 @@ struct grrl_perceive_options {
     const char *handle; /* a single trajectory */
     enum grrl_unit unit;
     enum grrl_profile profile;
-    float noise;   /* in the unit of the file, 0: as the profile has it */
+    float noise; /* in the unit of the file, 0: as the profile has it */
+    bool noise_from_points;
     int32_t trial; /* of a log, 0: the last */
     bool json;
     const char *svg; /* NULL: no picture */

@@ -13,6 +13,7 @@
 
 struct grrl_report {
     const struct grrl_model *model;
+    const struct grrl_perception *perception; /* that has the model */
     const struct grrl_perception_counts *counts;
     const char *term;
     const char *unit;    /* "m", "mm" or "px" */
@@ -24,6 +25,10 @@ struct grrl_report {
     unsigned keyframes; /* most at a time */
     bool y_down;        /* as in pictures */
 };
+
+/* What is known of bodies a and b, in a word; *pair has the probabilities. */
+const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
+                                 struct grrl_pair *pair);
 
 void grrl_report_text(FILE *file, const struct grrl_report *report);
 void grrl_report_json(FILE *file, const struct grrl_report *report);

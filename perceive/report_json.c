@@ -57,6 +57,31 @@ static void print_joint(FILE *file, const struct grrl_report *report, unsigned i
                   (double)joint->upper * to_unit);
 }
 
+/* Those that no joint ties. */
+static void print_pairs(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_body *body = report->model->body;
+    const char *separator = "\n";
+    (void)fputs("  \"pairs\": [", file);
+    for (unsigned a = 0; a < report->model->n_bodies; a++) {
+        for (unsigned b = a + 1; b < report->model->n_bodies; b++) {
+            struct grrl_pair pair;
+            const char *relation = grrl_report_relation(report, a, b, &pair);
+            if (pair.relation == GRRL_RELATION_JOINED)
+                continue;
+            (void)fprintf(file,
+                          "%s    {\"a\": \"f%u\", \"b\": \"f%u\", \"relation\": \"%s\", "
+                          "\"p_revolute\": %.6g, \"p_prismatic\": %.6g, "
+                          "\"p_disconnected\": %.6g}",
+                          separator, (unsigned)body[a].number, (unsigned)body[b].number, relation,
+                          (double)pair.p_revolute, (double)pair.p_prismatic,
+                          (double)pair.p_disconnected);
+            separator = ",\n";
+        }
+    }
+    (void)fputs(*separator == ',' ? "\n  ],\n" : "],\n", file);
+}
+
 static void print_list(FILE *file, const struct grrl_report *report, const char *name, unsigned n,
                        void (*print)(FILE *, const struct grrl_report *, unsigned))
 {
@@ -83,6 +108,7 @@ void grrl_report_json(FILE *file, const struct grrl_report *report)
         (unsigned)counts->outliers, (unsigned)counts->refused, (unsigned)counts->overflow);
     print_list(file, report, "bodies", model->n_bodies, print_body);
     print_list(file, report, "joints", model->n_joints, print_joint);
+    print_pairs(file, report);
     (void)fputs("  \"background\": ", file);
     print_ids(file, model, GRRL_FEATURE_BACKGROUND);
     (void)fputs(",\n  \"unassigned\": ", file);

@@ -58,6 +58,33 @@ static void print_joint(FILE *file, const struct grrl_report *report,
                   (double)joint->upper * to_unit, slides ? report->unit : "degrees");
 }
 
+const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
+                                 struct grrl_pair *pair)
+{
+    if (grrl_perception_pair(report->perception, (uint8_t)a, (uint8_t)b, pair) != GRRL_OK)
+        *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 0.0f, 0.0f, 0.0f};
+    return pair->relation == GRRL_RELATION_JOINED         ? "joined"
+           : pair->relation == GRRL_RELATION_DISCONNECTED ? "disconnected"
+                                                          : "undetermined";
+}
+
+static void print_other_pairs(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_model *model = report->model;
+    (void)fputs("\nother pairs\n", file);
+    for (unsigned a = 0; a < model->n_bodies; a++) {
+        for (unsigned b = a + 1; b < model->n_bodies; b++) {
+            struct grrl_pair pair;
+            const char *relation = grrl_report_relation(report, a, b, &pair);
+            if (pair.relation != GRRL_RELATION_JOINED)
+                (void)fprintf(
+                    file, "  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)\n",
+                    (unsigned)model->body[a].number, (unsigned)model->body[b].number, relation,
+                    (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected);
+        }
+    }
+}
+
 void grrl_report_text(FILE *file, const struct grrl_report *report)
 {
     const struct grrl_model *model = report->model;
@@ -66,6 +93,8 @@ void grrl_report_text(FILE *file, const struct grrl_report *report)
     (void)fprintf(file, "\njoints %u\n", (unsigned)model->n_joints);
     for (unsigned i = 0; i < model->n_joints; i++)
         print_joint(file, report, &model->joint[i]);
+    if (model->n_bodies > 1)
+        print_other_pairs(file, report);
     (void)fprintf(file, "\n%u frames of %u tracks, %u keyframes, profile %s, noise %.3g %s\n",
                   report->frames, report->tracks, report->keyframes, report->profile, report->noise,
                   report->unit);

@@ -104,6 +104,10 @@ static bool read_header(struct reader *reader, char *line)
     for (int i = FRAME; i <= Y; i++)
         if (reader->place[i] == ABSENT)
             return fail(reader, 1, header_advice, missing[i]);
+    const struct field *y = &fields[reader->place[Y]];
+    if (reader->in_pixels &&
+        (strcmp(y->text, "y") == 0 || strcmp(fields[reader->place[X]].text, "x") == 0))
+        return fail(reader, y->column, "one of x and y is in pixels, the other not", y->text);
     return true;
 }
 

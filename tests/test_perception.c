@@ -7,119 +7,7 @@
 
 #include <cmocka.h>
 
-#include "kinematic_world.h"
-
-static struct grrl_perception perception;
-static struct kinematic_world world;
-
-static void start(uint64_t seed, const char *chain)
-{
-    struct grrl_perception_config config;
-    grrl_perception_config_default(&config);
-    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
-    world_init(&world, seed);
-    world_add_chain(&world, chain, -0.4f, 0.0f);
-    world_add_background(&world, 25);
-    world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
-    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-}
-
-/* The true link of a tracked feature, -1 for the background. */
-static int true_link(int32_t id)
-{
-    for (int i = 0; i < world.n_points; i++) {
-        if (world.id[i] == id) {
-            return world.body[i];
-        }
-    }
-    return -2;
-}
-
-/* The true link most of a body's features are on. */
-static int link_of_body(const struct grrl_model *model, int body)
-{
-    int votes[WORLD_LINKS] = {0};
-    int best = 0;
-    for (int i = 0; i < model->n_features; i++) {
-        int link = true_link(model->feature_id[i]);
-        if (model->feature_body[i] == body && link >= 0) {
-            votes[link]++;
-        }
-    }
-    for (int i = 0; i < world.n_links; i++) {
-        best = votes[i] > votes[best] ? i : best;
-    }
-    return best;
-}
-
-/* Features that lie in a body of another link than their own. */
-static int misplaced(const struct grrl_model *model)
-{
-    int n = 0;
-    for (int i = 0; i < model->n_features; i++) {
-        if (model->feature_body[i] < model->n_bodies) {
-            n += link_of_body(model, model->feature_body[i]) != true_link(model->feature_id[i]);
-        }
-    }
-    return n;
-}
-
-/* Features that are not in the body most of their link's features are in. Links that have not moved
- * against one another may share a body. */
-static int torn_off(const struct grrl_model *model)
-{
-    int count[WORLD_LINKS][GRRL_MAX_LINKS] = {{0}};
-    int n = 0;
-    for (int i = 0; i < model->n_features; i++) {
-        int link = true_link(model->feature_id[i]);
-        if (link >= 0 && model->feature_body[i] < model->n_bodies) {
-            count[link][model->feature_body[i]]++;
-        }
-    }
-    for (int link = 0; link < world.n_links; link++) {
-        int most = 0;
-        for (int body = 0; body < model->n_bodies; body++) {
-            n += count[link][body];
-            most = count[link][body] > most ? count[link][body] : most;
-        }
-        n -= most;
-    }
-    return n;
-}
-
-/* Every body another link, every joint between neighbours in the chain and of the right type. */
-static bool is_the_chain(const struct grrl_model *model)
-{
-    if (model->n_bodies != world.n_links || model->n_joints != world.n_links - 1) {
-        return false;
-    }
-    bool found[WORLD_LINKS] = {false};
-    for (int i = 0; i < model->n_joints; i++) {
-        int a = link_of_body(model, model->joint[i].a);
-        int b = link_of_body(model, model->joint[i].b);
-        int child = a > b ? a : b;
-        char type = model->joint[i].type == GRRL_REVOLUTE ? 'R' : 'P';
-        if ((a > b ? a - b : b - a) != 1 || world.joint[child] != type || found[child]) {
-            return false;
-        }
-        found[child] = true;
-    }
-    return true;
-}
-
-static void push(const float *dq)
-{
-    struct grrl_vec2 shift = {0.01f, -0.005f};
-    assert_int_equal(world_push(&world, &perception, dq, shift, 0.05f), GRRL_OK);
-}
-
-static void move_one(int link, float by)
-{
-    float dq[WORLD_LINKS] = {0.0f};
-    dq[link] = by;
-    push(dq);
-}
+#include "perception_check.h"
 
 static void one_blob_before_anything_moved(void **state)
 {
@@ -393,19 +281,56 @@ static void lone_points_off_their_body_are_dropped(void **state)
     }
 }
 
-static void branches_and_numbers_stay(void **state)
+/* A star: three links turn about both ends and the middle of the first. */
+static void make_star(uint64_t seed)
 {
-    (void)state;
     struct grrl_perception_config config;
     grrl_perception_config_default(&config);
     assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
-    world_init(&world, 8);
+    world_init(&world, seed);
     int hub = world_add_link(&world, -1, 0);
-    for (int i = 0; i < 3; i++) { /* a star: three links turn about both ends and the middle */
+    for (int i = 0; i < 3; i++) {
         int leg = world_add_link(&world, hub, 'R');
         world.anchor_m[leg] = 0.06f * (float)(i - 1);
         world.q[leg] = 1.0f + 0.6f * (float)i;
     }
+}
+
+/* Outliers bend a body more than a small joint does; no joint must be believed for that. */
+static void outliers_join_no_arms_of_a_star(void **state)
+{
+    (void)state;
+    int joints = 0;
+    int wrong = 0;
+    for (uint64_t seed = 60; seed < 100; seed++) {
+        make_star(seed);
+        world.missing = 0.2f;
+        world.outliers = 0.02f;
+        world_rest(&world, &perception, 10);
+        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+        for (int i = 0; i < 9; i++) {
+            int leg = 1 + (int)grrl_random_below(&world.random, 3);
+            float turn = leg == 1 + (int)seed % 3 ? 0.05f : 0.3f; /* one hardly turns */
+            move_one(leg, world.q[leg] > 1.0f + 0.6f * (float)(leg - 1) ? -turn : turn);
+            const struct grrl_model *model = grrl_perception_model(&perception);
+            int hub = body_of_link(model, 0);
+            for (int j = 0; j < model->n_joints; j++) {
+                bool sure = model->joint[j].probability >= 0.95f;
+                joints += sure;
+                wrong += sure && model->joint[j].a != hub && model->joint[j].b != hub;
+            }
+        }
+    }
+    print_message("seeds 60 to 99: %d of %d joints called at 0.95 are between arms\n", wrong,
+                  joints);
+    assert_true(joints > 200);
+    assert_true(wrong * 100 <= joints);
+}
+
+static void branches_and_numbers_stay(void **state)
+{
+    (void)state;
+    make_star(8);
     world_rest(&world, &perception, 10);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     move_one(1, -0.4f);
@@ -503,6 +428,29 @@ static void missing_features_are_no_harm(void **state)
     move_one(1, 0.35f);
     move_one(2, -0.35f);
     assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
+/* In a fast push the mean of a feature that was seen in two frames of three lies elsewhere. */
+static void gaps_in_fast_motion_are_no_harm(void **state)
+{
+    (void)state;
+    int complete = 0;
+    int away = 0;
+    const struct grrl_vec2 shifts[] = {{0.7f, 0.2f}, {-0.6f, 0.3f}, {0.5f, -0.5f}, {-0.7f, 0.1f}};
+    for (uint64_t seed = 70; seed < 90; seed++) {
+        start(seed, "RP");
+        world.missing = 0.2f;
+        for (int i = 0; i < 4; i++) {
+            float dq[WORLD_LINKS] = {0.0f, i % 2 == 0 ? 0.3f : -0.2f, i < 2 ? 0.012f : -0.01f};
+            assert_int_equal(world_push(&world, &perception, dq, shifts[i], 0.4f), GRRL_OK);
+        }
+        const struct grrl_model *model = grrl_perception_model(&perception);
+        complete += is_the_chain(model);
+        away += torn_off(model);
+    }
+    print_message("seeds 70 to 89: %d of 20 chains complete, %d features apart from their link\n",
+                  complete, away);
+    assert_true(complete >= 19);
 }
 
 static void outliers_do_not_draw_the_means(void **state)
@@ -624,9 +572,11 @@ int main(void)
         cmocka_unit_test(an_outlier_that_passes_does_not_end_a_track),
         cmocka_unit_test(lone_points_off_their_body_are_dropped),
         cmocka_unit_test(branches_and_numbers_stay),
+        cmocka_unit_test(outliers_join_no_arms_of_a_star),
         cmocka_unit_test(random_chains_are_found),
         cmocka_unit_test(order_and_ids_of_points_do_not_matter),
         cmocka_unit_test(missing_features_are_no_harm),
+        cmocka_unit_test(gaps_in_fast_motion_are_no_harm),
         cmocka_unit_test(outliers_do_not_draw_the_means),
         cmocka_unit_test(bad_points_are_refused_and_counted),
         cmocka_unit_test(a_jump_is_an_outlier_a_long_one_a_new_feature),

@@ -525,10 +525,12 @@ static bool adopt_strays(struct grrl_perception *p)
 
 /*
  * A joint within a body that moved too little to be told bends the body: what its residuals vary
- * beyond noise, per axis.
+ * beyond noise, per axis. It bends it less than what tells a joint; outliers do more, and must not
+ * pass for it: where they do, no joint misses anything any more.
  */
 static float bend_of(const struct grrl_perception *p, uint8_t body)
 {
+    float most = p->config.min_slide_m * p->config.min_slide_m;
     float sum = 0.0f;
     float n = 0.0f;
     for (uint16_t i = 0; i < p->n_slots; i++) {
@@ -537,7 +539,7 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
             if (w > 0 && p->pose[k][body].mass > 0.0f) {
                 float d2 = grrl_distance2(p->keyframe[k].point[i],
                                           grrl_transform(p->pose[k][body].pose, p->shape[i]));
-                sum += 0.5f * d2 - grrl_keyframe_variance(p, w);
+                sum += 0.5f * (d2 < most ? d2 : most) - grrl_keyframe_variance(p, w);
                 n += 1.0f;
             }
         }
@@ -573,6 +575,9 @@ void grrl_bodies_update(struct grrl_perception *p)
     give_back_the_table(p);
     dissolve_redundant(p);
     for (uint8_t b = 0; b < p->n_bodies; b++) {
+        uint16_t slots[GRRL_MAX_FEATURES];
+        uint16_t n = grrl_body_slots(p, b, slots);
+        grrl_rigid_refit(p, slots, n, p->shape, &p->pose[0][b], GRRL_MAX_LINKS);
         p->bend_m2[b] = bend_of(p, b);
     }
 }

@@ -17,7 +17,7 @@
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
 #define MISFIT_BASE 10.0f   /* chi squared beyond which a type does not explain the motion, .. */
-#define MISFIT_SIGMAS 3.0f  /* .. and its standard deviations over all keyframes */
+#define MISFIT_SIGMAS 5.0f  /* .. and its standard deviations over all keyframes */
 #define MISFIT_WEIGHT 0.1f  /* of chi squared missed, among joints equally well supported */
 #define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
 #define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */

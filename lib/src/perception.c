@@ -277,13 +277,33 @@ static void thin_keyframes(struct grrl_perception *p)
     p->counts.thinned++;
 }
 
+/*
+ * How many points a feature needs in a window of a push. Means of different frames lie apart by
+ * what moved between them, so that only features seen in all frames count; where hardly any were,
+ * all do.
+ */
+static uint8_t points_needed(const struct grrl_perception *p)
+{
+    unsigned seen = 0;
+    unsigned complete = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        struct grrl_vec2 mean;
+        uint8_t weight = window_mean(p, i, &mean);
+        seen += weight > 0 ? 1u : 0u;
+        complete += weight >= p->window.frames ? 1u : 0u;
+    }
+    return 3 * complete >= seen ? p->window.frames : 1;
+}
+
 static void store_window(struct grrl_perception *p, struct grrl_perception_keyframe *key,
                          bool at_rest)
 {
     memset(key, 0, sizeof *key);
     key->at_rest = at_rest;
+    uint8_t least = at_rest ? 1 : points_needed(p);
     for (uint16_t i = 0; i < p->n_slots; i++) {
-        key->weight[i] = window_mean(p, i, &key->point[i]);
+        uint8_t weight = window_mean(p, i, &key->point[i]);
+        key->weight[i] = weight < least ? 0 : weight;
     }
 }
 

@@ -37,6 +37,15 @@ float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight);
 void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                     struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride);
 
+/*
+ * The poses once more, in each keyframe without the points that lie off the body: the farthest
+ * goes, and the next, until none is off. More than a third are no outliers, and the pose stays as
+ * it was.
+ */
+void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                      const struct grrl_vec2 *shape, struct grrl_perception_pose *poses,
+                      size_t stride);
+
 /* Where slot's point lies in the frame of these poses: the mean over all keyframes. */
 bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       const struct grrl_perception_pose *poses, size_t stride,

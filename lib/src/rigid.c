@@ -1,5 +1,7 @@
 #include "perception_internal.h"
 
+#define OFF_SIGMAS 5.0f /* of a point in a keyframe */
+
 float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight)
 {
     float noise = p->config.noise_m;
@@ -146,6 +148,57 @@ void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint
     }
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         fit_pose(&p->keyframe[k], slots, n, shape, &poses[k * stride]);
+    }
+}
+
+/* Farther off its body than noise, and a joint too small to be told, explain. */
+static bool is_off(const struct grrl_perception *p, uint8_t weight, float d2)
+{
+    float least = p->config.min_slide_m * p->config.min_slide_m;
+    return d2 > least && d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_keyframe_variance(p, weight);
+}
+
+/* The place in slots of the point farthest off its body in keyframe k, n: none is off. */
+static uint16_t farthest_off(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
+                             uint16_t n, const struct grrl_vec2 *shape,
+                             const struct grrl_perception_pose *pose)
+{
+    uint16_t worst = n;
+    float worst2 = 0.0f;
+    for (uint16_t i = 0; i < n; i++) {
+        float d2 = grrl_distance2(p->keyframe[k].point[slots[i]],
+                                  grrl_transform(pose->pose, shape[slots[i]]));
+        if (d2 > worst2 && is_off(p, p->keyframe[k].weight[slots[i]], d2)) {
+            worst = i;
+            worst2 = d2;
+        }
+    }
+    return worst;
+}
+
+void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                      const struct grrl_vec2 *shape, struct grrl_perception_pose *poses,
+                      size_t stride)
+{
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        uint16_t kept[GRRL_MAX_FEATURES];
+        uint16_t n_kept = 0;
+        for (uint16_t i = 0; i < n; i++) {
+            if (p->keyframe[k].weight[slots[i]] > 0) {
+                kept[n_kept++] = slots[i];
+            }
+        }
+        struct grrl_perception_pose pose = poses[k * stride];
+        uint16_t least = (uint16_t)(n_kept - n_kept / 3);
+        uint16_t worst = 0;
+        while (pose.mass > 0.0f && n_kept >= least &&
+               (worst = farthest_off(p, k, kept, n_kept, shape, &pose)) < n_kept) {
+            kept[worst] = kept[--n_kept];
+            fit_pose(&p->keyframe[k], kept, n_kept, shape, &pose);
+        }
+        if (n_kept >= least) {
+            poses[k * stride] = pose;
+        }
     }
 }
 

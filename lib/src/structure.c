@@ -8,6 +8,7 @@
 
 #define PARALLELOGRAM_COST 20.0f /* sliding that turning explains comes after all else */
 #define SHORT_SLIDE 4.0f         /* in units of the least that tells a joint */
+#define SURE_DISCONNECTED 0.95f
 #define LOOP_COST 40.0f /* chi squared by which a joint that closes a loop is better than free */
 
 /* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
@@ -277,4 +278,39 @@ void grrl_structure_update(struct grrl_perception *p)
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         describe_body(p, b, &model->body[b], model);
     }
+}
+
+static bool is_joined(const struct grrl_model *model, uint8_t a, uint8_t b)
+{
+    for (uint8_t i = 0; i < model->n_joints; i++) {
+        if (model->joint[i].a == a && model->joint[i].b == b) {
+            return true;
+        }
+    }
+    return false;
+}
+
+enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, uint8_t a,
+                                      uint8_t b, struct grrl_pair *pair)
+{
+    const struct grrl_model *model = &perception->model;
+    uint8_t first = a < b ? a : b;
+    uint8_t second = a < b ? b : a;
+    if (first == second || second >= model->n_bodies) {
+        return GRRL_ERR_ARGUMENT;
+    }
+    struct grrl_joint_evidence e = {.fit = {.excited = false}};
+    (void)grrl_joint_weigh(perception, first, second, &e);
+    *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f};
+    if (e.fit.excited) {
+        pair->p_revolute = e.p[0];
+        pair->p_prismatic = e.p[1];
+        pair->p_disconnected = e.p[2];
+    }
+    if (is_joined(model, first, second)) {
+        pair->relation = GRRL_RELATION_JOINED;
+    } else if (pair->p_disconnected >= SURE_DISCONNECTED) {
+        pair->relation = GRRL_RELATION_DISCONNECTED;
+    }
+    return GRRL_OK;
 }

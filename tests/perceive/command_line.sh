@@ -39,6 +39,8 @@ expect 0 'f1 f2 revolute\|f2 f1 revolute' "$WORK/hinge.csv"
 expect 0 '^D(lb, P(' --unit mm "$WORK/slide.csv"
 expect 0 '"type": "prismatic"' --unit mm --json "$WORK/slide.csv"
 expect 0 '"noise": 0.5,' --unit mm --noise 0.5 --json "$WORK/slide.csv"
+expect 0 'profile tracker, noise 0.1[6-9]' --unit mm --noise auto "$WORK/slide.csv"
+expect 0 'D(lb, R(' --noise auto "$WORK/hinge.csv"
 expect 0 'profile tracker, noise 0.7 mm' --unit mm "$WORK/slide.csv"
 expect 0 'profile camera, noise 1 px' --unit px "$WORK/slide.csv"
 expect 0 'profile tracker, noise 1.5 px' --unit px --profile tracker --noise 1.5 "$WORK/slide.csv"
@@ -76,6 +78,14 @@ expect 0 'warning: 1100 tracks, but this build holds' "$WORK/many.csv"
 printf 'frame,point,x,y\n0,1,5000,0\n1,1,5000,0\n' >"$WORK/far.csv"
 expect 1 'no point is visible' "$WORK/far.csv"
 
+
+# a noise that cannot be measured
+printf 'frame,point,x,y\n0,1,0,0\n1,1,0,0\n2,1,1,0\n' >"$WORK/short.csv"
+expect 1 'auto: too few points' --noise auto "$WORK/short.csv"
+awk 'BEGIN { print "frame,point,x,y"; for (f = 0; f < 9; f++) for (i = 0; i < 20; i++)
+    printf "%d,%d,%d,%d\n", f, i, i, f }' >"$WORK/rounded.csv"
+expect 1 'auto: the points do not scatter' --noise auto "$WORK/rounded.csv"
+
 # a handle
 awk 'BEGIN { for (i = 0; i < 80; i++) print 0.4 * cos(i / 50), 0.4 * sin(i / 50), 1.0 }' >"$WORK/door"
 awk 'BEGIN { for (i = 0; i < 80; i++) print 20 * i, 12 * i }' >"$WORK/drawer"
@@ -96,7 +106,9 @@ expect 2 'one input only' --handle a b
 expect 2 'one file of tracks only' a b
 expect 2 '--unit inch: must be m, mm or px' --unit inch a
 expect 2 '--profile lidar: must be tracker or camera' --profile lidar a
-expect 2 '--noise 0: must be a number above 0' --noise 0 a
+expect 2 '--noise 0: must be a number above 0, or auto' --noise 0 a
+expect 2 '--noise automatic: must be' --noise automatic a
+expect 2 'noise auto does not go with --handle' --noise auto --handle a
 expect 2 '--trial needs --log' --trial 2 a
 expect 2 'camera is for positions in pixels' --profile camera --unit mm a
 expect 2 'Try grrl-perceive --help' --nonsense

@@ -81,6 +81,8 @@ static void test_what_is_wrong(void **state)
         {"frame,point,x\n", "f:1:1: there is no column y or y_px: the header names"},
         {"frame,frame,point,x,y\n", "f:1:7: frame: another column means the same"},
         {"frame,point,x,y,x_px\n", "f:1:17: x_px: another column means the same"},
+        {"frame,point,x_px,y\n", "f:1:18: y: one of x and y is in pixels, the other not"},
+        {"y_px,frame,point,x\n", "f:1:1: y_px: one of x and y is in pixels"},
         {"frame,point,x,y\n0,1,2\n", "f:2:1: 3 fields, but the header has 4"},
         {"frame,point,x,y\n0,1,2,3,4\n", "f:2:1: 5 fields, but the header has 4"},
         {"frame,point,x,y\n0.5,1,2,3\n", "f:2:1: 0.5: a frame is a whole number"},

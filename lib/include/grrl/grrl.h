@@ -14,6 +14,7 @@
 /* the world */
 #include "grrl/geometry.h"
 #include "grrl/grounding.h"
+#include "grrl/noise.h"
 #include "grrl/perception.h"
 #include "grrl/trajectory.h"
 /* learning */

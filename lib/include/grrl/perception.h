@@ -83,6 +83,22 @@ struct grrl_joint {
     float upper;              /* radians (b relative to a) or metres (along the axis) */
 };
 
+/* What is known of two bodies. Features of one body are rigid; the rest of the answers is here. */
+enum grrl_relation {
+    GRRL_RELATION_UNDETERMINED, /* they moved too little, or in too few ways, to tell */
+    GRRL_RELATION_DISCONNECTED, /* with a probability of 0.95 and more */
+    GRRL_RELATION_JOINED        /* by a joint of the model */
+};
+
+/* The evidence of two bodies' motion alone; the three probabilities sum to 1. Without a motion that
+ * tells they are a third each. The structure of all may refuse what a pair suggests. */
+struct grrl_pair {
+    uint8_t relation; /* enum grrl_relation */
+    float p_revolute;
+    float p_prismatic;
+    float p_disconnected;
+};
+
 /* Everything perception believes. Bodies and joints are in order of discovery. */
 struct grrl_model {
     uint8_t n_bodies;
@@ -201,6 +217,13 @@ GRRL_MUST_USE enum grrl_status grrl_perception_update(struct grrl_perception *pe
 
 /* The result of the last update; empty before the first. */
 const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception);
+
+/*
+ * What the last update knows of bodies a and b (indices of the model). GRRL_ERR_ARGUMENT: there are
+ * no two such bodies. To be called before further frames. Cost: linear in keyframes and features.
+ */
+GRRL_MUST_USE enum grrl_status grrl_perception_pair(const struct grrl_perception *perception,
+                                                    uint8_t a, uint8_t b, struct grrl_pair *pair);
 
 /* The structure of a model: vertex i is body i, edge order is the order of discovery. names and
  * edges as in grrl_graph_from_term; either may be NULL. */
