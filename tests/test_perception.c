@@ -157,7 +157,9 @@ static void little_motion_parts_links_beside_their_joint(void **state)
     print_message("seeds 200 to 229: %d bodies, %d of %d features apart from their link\n", bodies,
                   away, features);
     assert_true(bodies > 30 * 2); /* or there was nothing to share out */
-    assert_true(away * 100 <= features);
+    /* fewer keyframes average less noise */
+    const int most_percent = GRRL_MAX_KEYFRAMES >= 48 ? 1 : 2;
+    assert_true(away * 100 <= most_percent * features);
 }
 
 /* Four links in a parallelogram; all joints turn by as much. */
