@@ -32,14 +32,19 @@ static void explain(const grrl_decision_t *decision)
 {
     static const char *const reasons[] = {"at random", "new action", "best bound", "adopted"};
     static const char *const levels[] = {"same structure", "same structure, properties dropped",
-                                         "sub-structure", "similar actions"};
+                                         "sub-structure"};
     (void)printf("trial %" PRId32 " push %" PRId32 ": f%d at %d deg, %s", decision->trial_id,
                  decision->cmd_seq, decision->link_number, decision->direction_deg,
                  reasons[decision->reason]);
     if (decision->experience >= 0)
-        (void)printf(" %.2f (%.2f to %.2f) from %s, closest %" PRId32 " at distance %d",
-                     (double)decision->value, (double)decision->lower, (double)decision->upper,
-                     levels[decision->level], decision->experience, decision->distance);
+        (void)printf(" %.2f (%.2f to %.2f) from ", (double)decision->value, (double)decision->lower,
+                     (double)decision->upper);
+    if (decision->experience >= 0 && decision->level == GRRL_DECISION_T_CONTEXT)
+        (void)printf("all cases, case %" PRId32 " differs least, in %d parts", decision->experience,
+                     decision->distance);
+    else if (decision->experience >= 0)
+        (void)printf("experience %" PRId32 ", %s, distance %d", decision->experience,
+                     levels[decision->level], decision->distance);
     (void)printf("; phi %.2f, last reward %g\n", (double)decision->phi,
                  (double)decision->last_reward);
 }
