@@ -164,7 +164,8 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 
 /*
  * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. The last frame shows where all has come to lie.
+ * moved enough. What was believed after a push counts in what is believed after the next, as it does
+ * in the agent. The last frame shows where all has come to lie.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
@@ -172,6 +173,11 @@ static enum grrl_status observe(const struct grrl_tracks *tracks)
         struct grrl_frame frame = frame_of(tracks, i);
         bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
         grrl_perception_observe(&perception, &frame, pushing);
+        if (tracks->frame[i].settled) {
+            enum grrl_status status = grrl_perception_update(&perception);
+            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen: perhaps later */
+                return status;
+        }
     }
     return grrl_perception_update(&perception);
 }

@@ -17,6 +17,7 @@ struct grrl_tracks_frame {
     size_t first;
     uint32_t n;
     bool pushing; /* the robot acts, or nobody knows */
+    bool settled; /* all lies still after a push */
 };
 
 struct grrl_tracks {

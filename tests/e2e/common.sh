@@ -1,8 +1,8 @@
-# Sourced by every end-to-end test, which ctest calls as: test.sh BIN_AGENT BIN_SIM BIN_HELPERS
+# Sourced by every end-to-end test, which ctest calls as: test.sh BIN_AGENT BIN_SIM BIN_HELPERS BIN_PERCEIVE
 # Where there is no multicast on lo, the test runs in a network namespace of its own; where that is
 # not allowed either, it is skipped (77).
 set -u
-AGENT=$1 SIM=$2 HELPERS=$3
+AGENT=$1 SIM=$2 HELPERS=$3 PERCEIVE=$4
 export LC_ALL=C
 
 if [ -z "${GRRL_E2E_NETWORK:-}" ]; then

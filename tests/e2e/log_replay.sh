@@ -12,6 +12,14 @@ timeout 60 "$AGENT" --observe --lcm-url "file://run.lcm?speed=0" --store log.sto
     fail "the observer ended with $?"
 same live.store log.store
 
+# Every trial ended with the structure known: grrl-perceive finds it in the same frames.
+for trial in 1 2 3 4 5; do
+    "$PERCEIVE" --log run.lcm --trial $trial >belief.txt 2>&1 || fail "grrl-perceive ended with $?"
+    if ! grep -qx 'bodies 4' belief.txt || ! grep -qx 'joints 3' belief.txt; then
+        fail "grrl-perceive finds another structure in trial $trial"
+    fi
+done
+
 # A log that is cut off ends the observer cleanly, too.
 head -c 100000 run.lcm >cut.lcm
 timeout 60 "$AGENT" --observe --lcm-url "file://cut.lcm?speed=0" --store cut.store >cut.txt 2>&1 ||
