@@ -258,29 +258,42 @@ static void an_outlier_that_passes_does_not_end_a_track(void **state)
     assert_int_equal(perception.counts.outliers - before, 0);
 }
 
-/* A feature off its body during one keyframe of a push is none of its motion; four that go together
- * are. */
+/* How many points are dropped when `off` features of a link are off it for one keyframe of a push.
+ */
+static uint32_t dropped_when_off(uint64_t seed, int off)
+{
+    start(seed, "R");
+    uint32_t before = perception.counts.outliers;
+    for (int f = 0; f < 60; f++) {
+        world.root[0].p.x += 0.001f;
+        struct grrl_frame frame = world_frame(&world);
+        for (uint32_t i = 0; i < frame.n && f >= 27 && f < 36; i++) {
+            for (int point = 0; point < off; point++) { /* of the first link */
+                world.y[i] += frame.id[i] == world.id[point] ? 0.009f : 0.0f;
+            }
+        }
+        grrl_perception_observe(&perception, &frame, true);
+    }
+    world_rest(&world, &perception, 10);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    return perception.counts.outliers - before;
+}
+
+/* One feature off its body is none of its motion; four that go together are. Where the mean of a
+ * keyframe falls is chance. */
 static void lone_points_off_their_body_are_dropped(void **state)
 {
     (void)state;
-    for (int off = 1; off <= 4; off += 3) {
-        start(23, "R");
-        uint32_t before = perception.counts.outliers;
-        for (int f = 0; f < 60; f++) {
-            world.root[0].p.x += 0.001f;
-            struct grrl_frame frame = world_frame(&world);
-            for (uint32_t i = 0; i < frame.n && f >= 27 && f < 36; i++) {
-                for (int point = 0; point < off; point++) { /* of the first link */
-                    world.y[i] += frame.id[i] == world.id[point] ? 0.009f : 0.0f;
-                }
-            }
-            grrl_perception_observe(&perception, &frame, true);
-        }
-        world_rest(&world, &perception, 10);
-        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-        uint32_t dropped = perception.counts.outliers - before;
-        assert_true(off == 1 ? dropped > 0 : dropped == 0);
+    int lone = 0;
+    int together = 0;
+    for (uint64_t seed = 20; seed < 40; seed++) {
+        lone += dropped_when_off(seed, 1) > 0;
+        together += dropped_when_off(seed, 4) > 0;
     }
+    print_message("seeds 20 to 39: dropped in %d when one is off, in %d when four are\n", lone,
+                  together);
+    assert_true(lone >= 10);
+    assert_true(together <= 2);
 }
 
 /* A star: three links turn about both ends and the middle of the first. */
