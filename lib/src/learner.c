@@ -1,5 +1,6 @@
 #include "grrl/learner.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* An agent of 100 experiences fits a quarter of a megabyte (checked for the default capacities). */
@@ -140,8 +141,11 @@ static void describe_actions(struct grrl_learner *learner)
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     learner->contexts.n_links = model->n_bodies;
     for (uint8_t i = 0; i < model->n_bodies; ++i) {
-        (void)!grrl_context_of(&learner->attempts, model, learner->config.perception.large_m, i,
-                               learner->contexts.action[i]);
+        enum grrl_status status =
+            grrl_context_of(&learner->attempts, model, learner->config.perception.large_m, i,
+                            learner->contexts.action[i]);
+        assert(status == GRRL_OK); /* there is such a body */
+        (void)status;
     }
 }
 
