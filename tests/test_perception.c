@@ -279,21 +279,21 @@ static uint32_t dropped_when_off(uint64_t seed, int off)
     return perception.counts.outliers - before;
 }
 
-/* One feature off its body is none of its motion; four that go together are. Where the mean of a
- * keyframe falls is chance. */
+/* One feature off its body is none of its motion; four that go together are. Which features the
+ * mean of a keyframe leaves off is chance, so that single seeds tell nothing. */
 static void lone_points_off_their_body_are_dropped(void **state)
 {
     (void)state;
     int lone = 0;
     int together = 0;
-    for (uint64_t seed = 20; seed < 40; seed++) {
+    for (uint64_t seed = 0; seed < 40; seed++) {
         lone += dropped_when_off(seed, 1) > 0;
         together += dropped_when_off(seed, 4) > 0;
     }
-    print_message("seeds 20 to 39: dropped in %d when one is off, in %d when four are\n", lone,
+    print_message("seeds 0 to 39: dropped in %d when one is off, in %d when four are\n", lone,
                   together);
-    assert_true(lone >= 10);
-    assert_true(together <= 2);
+    assert_true(lone >= 20);
+    assert_true(2 * together < lone);
 }
 
 /* A star: three links turn about both ends and the middle of the first. */
