@@ -5,7 +5,7 @@
 URL='udpm://239.255.76.67:7725?ttl=0'
 start agent "$AGENT" --lcm-url "$URL" --store kept.store
 agent=$LAST
-start sim timeout 100 "$SIM" --lcm-url "$URL" --object RPRPRPR --trials 30 --results r.csv
+start sim timeout 100 "$SIM" --lcm-url "$URL" --object RPRPRPR --trials 100 --results r.csv
 sim=$LAST
 for _ in $(seq 1500); do
     [ "$(wc -l <r.csv 2>/dev/null || echo 0)" -ge 4 ] && break
@@ -20,7 +20,7 @@ start agent2 timeout 60 "$AGENT" --lcm-url "$URL" --store kept.store
 agent=$LAST
 finish "$sim" grrl-sim
 finish "$agent" "the second agent"
-[ "$(grep -c -E 'discovered|capped' r.csv)" = 30 ] || fail "not 30 trials that count"
+[ "$(grep -c -E 'discovered|capped' r.csv)" = 100 ] || fail "not 100 trials that count"
 grep -q aborted r.csv || fail "no trial was aborted"
 cmp -s before.store kept.store && fail "the second agent saved nothing"
 exit 0
