@@ -40,8 +40,8 @@ static void explain(const grrl_decision_t *decision)
         (void)printf(" %.2f (%.2f to %.2f) from ", (double)decision->value, (double)decision->lower,
                      (double)decision->upper);
     if (decision->experience >= 0 && decision->level == GRRL_DECISION_T_CONTEXT)
-        (void)printf("all cases, case %" PRId32 " differs least, in %d parts", decision->experience,
-                     decision->distance);
+        (void)printf("all cases, case %" PRId32 " differs least, in %d part%s",
+                     decision->experience, decision->distance, decision->distance == 1 ? "" : "s");
     else if (decision->experience >= 0)
         (void)printf("experience %" PRId32 ", %s, distance %d", decision->experience,
                      levels[decision->level], decision->distance);
