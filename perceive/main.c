@@ -164,8 +164,8 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 
 /*
  * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. What was believed after a push counts in what is believed after the next, as it does
- * in the agent. The last frame shows where all has come to lie.
+ * moved enough. What was believed after a push counts in what is believed after the next, as it
+ * does in the agent. The last frame shows where all has come to lie.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
