@@ -84,11 +84,11 @@ static bool take(struct collector *to, const struct grrl_wire_points *points)
     struct grrl_tracks *tracks = to->tracks;
     bool first = tracks->n_frames == 0;
     bool rest = message->phase == GRRL_POINTS_T_REST || message->phase == GRRL_POINTS_T_SETTLED;
-    tracks->frame[tracks->n_frames++] = (struct grrl_tracks_frame){
-        .first = tracks->n_points,
-        .n = (uint32_t)n,
-        .pushing = !rest && !first,
-        .settled = message->phase == GRRL_POINTS_T_SETTLED};
+    tracks->frame[tracks->n_frames++] =
+        (struct grrl_tracks_frame){.first = tracks->n_points,
+                                   .n = (uint32_t)n,
+                                   .pushing = !rest && !first,
+                                   .settled = message->phase == GRRL_POINTS_T_SETTLED};
     memcpy(tracks->id + tracks->n_points, points->id, n * sizeof *points->id);
     memcpy(tracks->x + tracks->n_points, points->x, n * sizeof *points->x);
     memcpy(tracks->y + tracks->n_points, points->y, n * sizeof *points->y);
