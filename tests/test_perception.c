@@ -28,21 +28,6 @@ static void one_blob_before_anything_moved(void **state)
     assert_true(on_table_in_body <= 3); /* what lies right beside the object looks like it */
 }
 
-static void two_objects_are_two_bodies(void **state)
-{
-    (void)state;
-    struct grrl_perception_config config;
-    grrl_perception_config_default(&config);
-    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
-    world_init(&world, 3);
-    world_add_chain(&world, "R", -0.5f, -0.3f);
-    world_add_chain(&world, "R", 0.3f, 0.3f);
-    world_add_background(&world, 10);
-    world_rest(&world, &perception, 10);
-    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
-}
-
 static void revolute_joint_with_its_pivot(void **state)
 {
     (void)state;
@@ -574,7 +559,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_blob_before_anything_moved),
-        cmocka_unit_test(two_objects_are_two_bodies),
         cmocka_unit_test(revolute_joint_with_its_pivot),
         cmocka_unit_test(prismatic_joint_with_its_axis),
         cmocka_unit_test(little_motion_supports_no_type),

@@ -67,7 +67,7 @@ static void a_later_push_overturns_a_joint(void **state)
     assert_true(fabsf(pair.p_revolute + pair.p_prismatic + pair.p_disconnected - 1.0f) < 1e-5f);
 }
 
-static void without_motion_nothing_is_determined(void **state)
+static void two_objects_at_rest_are_two_bodies_and_no_more_is_known(void **state)
 {
     (void)state;
     struct grrl_pair pair;
@@ -80,6 +80,7 @@ static void without_motion_nothing_is_determined(void **state)
     world_add_background(&world, 10);
     world_rest(&world, &perception, 10);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
     assert_int_equal(grrl_perception_pair(&perception, 0, 1, &pair), GRRL_OK);
     assert_int_equal(pair.relation, GRRL_RELATION_UNDETERMINED);
     assert_true(fabsf(pair.p_disconnected - 1.0f / 3.0f) < 1e-5f);
@@ -326,7 +327,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_later_push_overturns_a_joint),
-        cmocka_unit_test(without_motion_nothing_is_determined),
+        cmocka_unit_test(two_objects_at_rest_are_two_bodies_and_no_more_is_known),
         cmocka_unit_test(joined_links_are_not_disconnected),
         cmocka_unit_test(features_that_join_late_find_their_body),
         cmocka_unit_test(features_that_vanish_come_back),
