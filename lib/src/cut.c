@@ -11,7 +11,6 @@
 #include "perception_internal.h"
 
 #define DIRECTIONS 6 /* of the line, over half a turn */
-#define HIDDEN_SIGMAS 5.0f
 
 /* What one part of the features tells in one keyframe, weighted by 1 / variance: q is a feature's
  * place, d its residual. */
@@ -156,7 +155,7 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
     return best - now;
 }
 
-bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body)
+float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body)
 {
     struct grrl_together together;
     uint16_t part[GRRL_MAX_FEATURES];
@@ -168,7 +167,7 @@ bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body)
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         together.pose[k] = p->pose[k][body];
     }
-    float free = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
-    float gain = grrl_best_cut(p, &together, body, part, &n_part);
-    return gain > (free + HIDDEN_SIGMAS * grrl_sqrt(2.0f * free)) * p->config.slack;
+    float chance = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
+    float gain = grrl_best_cut(p, &together, body, part, &n_part) / p->config.slack;
+    return gain > chance ? (gain - chance) / grrl_sqrt(2.0f * chance) : 0.0f;
 }

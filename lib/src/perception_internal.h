@@ -99,8 +99,9 @@ struct grrl_together {
 float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
                     uint8_t body, uint16_t *part, uint16_t *n_part);
 
-/* Whether a body's features part along some line more than noise explains. */
-bool grrl_hides_a_joint(const struct grrl_perception *p, uint8_t body);
+/* By how many standard deviations of chi squared a body's features part along some line more than
+ * noise explains; 0: they do not. */
+float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
 void grrl_body_add(struct grrl_perception *p);

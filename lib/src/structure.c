@@ -7,7 +7,8 @@
 #include "perception_internal.h"
 
 #define PARALLELOGRAM_COST 20.0f /* sliding that turning explains comes after all else */
-#define SHORT_SLIDE 4.0f         /* in units of the least that tells a joint */
+#define SHORT_SLIDE 5.0f         /* in units of the least that tells a joint */
+#define HIDDEN_SIGMAS 3.5f       /* of both bodies together, by which they hide joints */
 #define SURE_DISCONNECTED 0.95f
 #define LOOP_COST 40.0f /* chi squared by which a joint that closes a loop is better than free */
 
@@ -105,7 +106,7 @@ static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
 {
     bool is_short = e->fit.upper - e->fit.lower < SHORT_SLIDE * p->config.min_slide_m;
     return e->type == GRRL_PRISMATIC && is_short &&
-           (grrl_hides_a_joint(p, e->a) || grrl_hides_a_joint(p, e->b));
+           grrl_hidden_joint(p, e->a) + grrl_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
 }
 
 /* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
