@@ -10,10 +10,11 @@
  */
 #include "perception_internal.h"
 
-#define FREE_COST 14.0f      /* chi squared a free pose costs in a keyframe that needs it */
-#define FREE_COST_MAX 140.0f /* neighbouring keyframes are not independent: no more than this */
-#define TYPE_MARGIN 8.0f     /* chi squared by which one type must be better than the other */
-#define JOINT_PRIOR 2.0f     /* chi squared in favour of a joint where the motion tells nothing */
+#define FREE_COST 14.0f       /* chi squared a free pose costs in a keyframe that needs it */
+#define FREE_COST_MAX 140.0f  /* neighbouring keyframes are not independent: no more than this */
+#define TYPE_MARGIN 8.0f      /* chi squared by which one type must be better than the other */
+#define MOVING_MISS_MAX 14.0f /* chi squared: a few frames of a fast body can lie aside */
+#define JOINT_PRIOR 2.0f      /* chi squared in favour of a joint where the motion tells nothing */
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
 #define MISFIT_BASE 10.0f   /* chi squared beyond which a type does not explain the motion, .. */
@@ -99,6 +100,14 @@ static float turn_from_mean(const struct motion *motion, const struct relative *
     return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
 }
 
+/* Whether a keyframe that the fit misses by chi2 may be wrong itself. At rest many frames are
+ * averaged, in a push few: a gap and an outlier can draw a fast body aside, and outweigh all else.
+ */
+static bool is_doubtful(const struct motion *motion, uint8_t k, float chi2)
+{
+    return !motion->at_rest[k] && chi2 > MOVING_MISS_MAX;
+}
+
 /* Half the extent of a body's features. */
 static float half_extent(const struct grrl_perception *p, uint8_t body)
 {
@@ -161,7 +170,12 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
         struct grrl_vec2 q = {r->c * fit->in_b.x - r->s * fit->in_b.y,
                               r->s * fit->in_b.x + r->c * fit->in_b.y};
         struct grrl_vec2 miss = grrl_vec2_sub(grrl_vec2_sub(fit->in_a, q), r->d);
-        chi2 += grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+        float missed = grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+        if (is_doubtful(motion, k, missed)) {
+            chi2 += MOVING_MISS_MAX;
+            continue;
+        }
+        chi2 += missed;
         float turn = grrl_wrap_rad(turn_from_mean(motion, r) - first);
         float variance = turn_variance(p, motion, r);
         fit->lower = turn < fit->lower ? turn : fit->lower;
@@ -206,7 +220,6 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
     float xx = 0.0f;
     float xy = 0.0f;
     float yy = 0.0f;
-    float chi2 = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
         struct grrl_vec2 q = grrl_vec2_sub(slide_point(motion, r, middle), mean);
@@ -214,23 +227,31 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
         xx += wk * q.x * q.x;
         xy += wk * q.x * q.y;
         yy += wk * q.y * q.y;
-        float turn = turn_from_mean(motion, r);
-        chi2 += turn * turn / turn_variance(p, motion, r);
     }
     float major;
     float minor;
     grrl_principal_axes(xx, xy, yy, &major, &minor, &fit->axis_in_a);
-    chi2 += minor;
-    fit->excess = chi2 - 2.0f * (float)motion->n + 3.0f;
+    float chi2 = 0.0f;
+    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], middle), fit->axis_in_a);
     fit->lower = 0.0f;
     fit->upper = 0.0f;
-    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], middle), fit->axis_in_a);
     for (uint8_t k = 0; k < motion->n; k++) {
-        float slide =
-            grrl_vec2_dot(slide_point(motion, &motion->at[k], middle), fit->axis_in_a) - first;
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 point = slide_point(motion, r, middle);
+        float across = grrl_vec2_cross(fit->axis_in_a, grrl_vec2_sub(point, mean));
+        float turn = turn_from_mean(motion, r);
+        float missed = across * across / point_variance(p, motion, r, lever2, lever2) +
+                       turn * turn / turn_variance(p, motion, r);
+        if (is_doubtful(motion, k, missed)) {
+            chi2 += MOVING_MISS_MAX;
+            continue;
+        }
+        chi2 += missed;
+        float slide = grrl_vec2_dot(point, fit->axis_in_a) - first;
         fit->lower = slide < fit->lower ? slide : fit->lower;
         fit->upper = slide > fit->upper ? slide : fit->upper;
     }
+    fit->excess = chi2 - 2.0f * (float)motion->n + 3.0f;
     float range = fit->upper - fit->lower;
     fit->excited = range > p->config.min_slide_m &&
                    range * range * w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
