@@ -147,56 +147,6 @@ static void little_motion_parts_links_beside_their_joint(void **state)
     assert_true(away * 100 <= most_percent * features);
 }
 
-/* Four links in a parallelogram; all joints turn by as much. */
-static void start_parallelogram(uint64_t seed, float noise_m)
-{
-    struct grrl_perception_config config;
-    grrl_perception_config_default(&config);
-    config.noise_m = noise_m;
-    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
-    world_init(&world, seed);
-    world.noise_m = noise_m;
-    int base = world_add_link(&world, -1, 0);
-    int arm[2] = {world_add_link(&world, base, 'R'), world_add_link(&world, base, 'R')};
-    int top = world_add_link(&world, arm[0], 'R');
-    world.anchor_m[arm[0]] = -world.length_m / 2;
-    world.q[arm[0]] = world.q[arm[1]] = 1.4f;
-    world.q[top] = -1.4f;
-    world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
-    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-}
-
-static int prismatic_joints(const struct grrl_model *model)
-{
-    int n = 0;
-    for (int i = 0; i < model->n_joints; i++) {
-        n += model->joint[i].type == GRRL_PRISMATIC;
-    }
-    return n;
-}
-
-/* Opposite links of a parallelogram slide past each other without a turn; no joint does that. */
-static void a_parallelogram_has_no_sliding_joint(void **state)
-{
-    (void)state;
-    static const float turns[] = {0.03f, 0.07f}; /* too little to tell the joints, and enough */
-    static const float noise_m[] = {0.0007f, 0.0014f};
-    static const int allowed[] = {3, 6};
-    for (int i = 0; i < 2; i++) {
-        int sliding = 0;
-        for (uint64_t seed = 300; seed < 320; seed++) {
-            start_parallelogram(seed, noise_m[i]);
-            float dq[WORLD_LINKS] = {0.0f, turns[i], turns[i], -turns[i]};
-            push(dq);
-            sliding += prismatic_joints(grrl_perception_model(&perception));
-        }
-        print_message("seeds 300 to 319, turns of %.2f: %d sliding joints\n", (double)turns[i],
-                      sliding);
-        assert_true(sliding <= allowed[i]);
-    }
-}
-
 /* Features of the table beside the object seem to be its part; they stay when it moves away. */
 static void the_table_beside_the_object_is_no_link(void **state)
 {
@@ -282,67 +232,6 @@ static void lone_points_off_their_body_are_dropped(void **state)
 }
 
 /* A star: three links turn about both ends and the middle of the first. */
-static void make_star(uint64_t seed)
-{
-    struct grrl_perception_config config;
-    grrl_perception_config_default(&config);
-    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
-    world_init(&world, seed);
-    int hub = world_add_link(&world, -1, 0);
-    for (int i = 0; i < 3; i++) {
-        int leg = world_add_link(&world, hub, 'R');
-        world.anchor_m[leg] = 0.06f * (float)(i - 1);
-        world.q[leg] = 1.0f + 0.6f * (float)i;
-    }
-}
-
-/* Outliers bend a body more than a small joint does; no joint must be believed for that. */
-static void outliers_join_no_arms_of_a_star(void **state)
-{
-    (void)state;
-    int joints = 0;
-    int wrong = 0;
-    for (uint64_t seed = 60; seed < 100; seed++) {
-        make_star(seed);
-        world.missing = 0.2f;
-        world.outliers = 0.02f;
-        world_rest(&world, &perception, 10);
-        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-        for (int i = 0; i < 9; i++) {
-            int leg = 1 + (int)grrl_random_below(&world.random, 3);
-            float turn = leg == 1 + (int)seed % 3 ? 0.05f : 0.3f; /* one hardly turns */
-            move_one(leg, world.q[leg] > 1.0f + 0.6f * (float)(leg - 1) ? -turn : turn);
-            const struct grrl_model *model = grrl_perception_model(&perception);
-            int hub = body_of_link(model, 0);
-            for (int j = 0; j < model->n_joints; j++) {
-                bool sure = model->joint[j].probability >= 0.95f;
-                joints += sure;
-                wrong += sure && model->joint[j].a != hub && model->joint[j].b != hub;
-            }
-        }
-    }
-    print_message("seeds 60 to 99: %d of %d joints called at 0.95 are between arms\n", wrong,
-                  joints);
-    assert_true(joints > 200);
-    assert_true(wrong * 100 <= joints);
-}
-
-static void branches_and_numbers_stay(void **state)
-{
-    (void)state;
-    make_star(8);
-    world_rest(&world, &perception, 10);
-    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-    move_one(1, -0.4f);
-    uint16_t first = grrl_perception_model(&perception)->body[0].number;
-    move_one(2, 0.35f);
-    move_one(3, 0.4f);
-    const struct grrl_model *model = grrl_perception_model(&perception);
-    assert_int_equal(model->n_bodies, 4);
-    assert_int_equal(model->n_joints, 3);
-    assert_int_equal(model->body[0].number, first);
-}
-
 /* Over many random motions hardly any state may carry a wrong joint or a split link. */
 static void random_chains_are_found(void **state)
 {
@@ -354,7 +243,7 @@ static void random_chains_are_found(void **state)
     int trials = 0;
     for (uint64_t seed = 100; seed < 120; seed++) {
         start(seed, chains[seed % 4]);
-        for (int i = 0; i < 12; i++) {
+        for (int i = 0; i < 16; i++) {
             float dq[WORLD_LINKS] = {0.0f};
             int link = 1 + (int)grrl_random_below(&world.random, (uint32_t)world.n_links - 1);
             float d = world.joint[link] == 'R' ? world_uniform(&world, 0.1f, 0.4f)
@@ -370,7 +259,7 @@ static void random_chains_are_found(void **state)
     }
     print_message("seeds 100 to 119: %d of %d chains complete, %d of %d states with a split link\n",
                   complete, trials, wrong, states);
-    assert_true(complete >= 16); /* twelve random pushes need not move every joint */
+    assert_true(complete >= 16); /* sixteen random pushes need not move every joint */
     assert_true(wrong * 50 <= states);
 }
 
@@ -470,6 +359,36 @@ static void outliers_do_not_draw_the_means(void **state)
     assert_true(complete >= 9);
 }
 
+static void shift_link(int link, float by)
+{
+    for (int i = 0; i < world.n_points; i++) {
+        world.local[i].y += world.body[i] == link ? by : 0.0f;
+    }
+}
+
+/* What few frames of a fast body tell does not count against a joint that all others tell. */
+static void a_keyframe_beside_the_motion_does_not_hide_a_joint(void **state)
+{
+    (void)state;
+    start(21, "P");
+    for (int i = 0; i < 6; i++) {
+        float dq[WORLD_LINKS] = {0.0f, i % 2 == 0 ? 0.015f : -0.015f};
+        push(dq);
+    }
+    for (int f = 0; f < 120; f++) {
+        world.q[1] += 0.015f / 120;
+        world.root[0].p.x += 0.1f / 120;
+        if (f == 60 || f == 66) {
+            shift_link(1, f == 60 ? 0.009f : -0.009f);
+        }
+        struct grrl_frame frame = world_frame(&world);
+        grrl_perception_observe(&perception, &frame, true);
+    }
+    world_rest(&world, &perception, 10);
+    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    assert_true(is_the_chain(grrl_perception_model(&perception)));
+}
+
 static void bad_points_are_refused_and_counted(void **state)
 {
     (void)state;
@@ -566,17 +485,15 @@ int main(void)
         cmocka_unit_test(evidence_accumulates_over_pushes),
         cmocka_unit_test(a_motion_in_the_middle_is_not_missed),
         cmocka_unit_test(little_motion_parts_links_beside_their_joint),
-        cmocka_unit_test(a_parallelogram_has_no_sliding_joint),
         cmocka_unit_test(the_table_beside_the_object_is_no_link),
         cmocka_unit_test(an_outlier_that_passes_does_not_end_a_track),
         cmocka_unit_test(lone_points_off_their_body_are_dropped),
-        cmocka_unit_test(branches_and_numbers_stay),
-        cmocka_unit_test(outliers_join_no_arms_of_a_star),
         cmocka_unit_test(random_chains_are_found),
         cmocka_unit_test(order_and_ids_of_points_do_not_matter),
         cmocka_unit_test(missing_features_are_no_harm),
         cmocka_unit_test(gaps_in_fast_motion_are_no_harm),
         cmocka_unit_test(outliers_do_not_draw_the_means),
+        cmocka_unit_test(a_keyframe_beside_the_motion_does_not_hide_a_joint),
         cmocka_unit_test(bad_points_are_refused_and_counted),
         cmocka_unit_test(a_jump_is_an_outlier_a_long_one_a_new_feature),
         cmocka_unit_test(more_features_than_fit_are_counted),

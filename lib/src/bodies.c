@@ -442,6 +442,14 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
     together.n = slots_of_both(p, a, b, together.slot);
     grrl_rigid_fit(p, together.slot, together.n, together.shape, together.pose, 1);
     float gain = grrl_best_cut(p, &together, a, part, &n_part);
+    uint16_t crossed[GRRL_MAX_FEATURES];
+    uint16_t n_crossed;
+    float crossed_gain = grrl_best_cross(p, &together, a, crossed, &n_crossed);
+    if (crossed_gain > gain) {
+        gain = crossed_gain;
+        n_part = n_crossed;
+        memcpy(part, crossed, n_part * sizeof *part);
+    }
     if (gain < CUT_GAIN * p->config.slack) {
         return;
     }

@@ -8,8 +8,11 @@
  * turn and shift, and the sums that a least-squares fit needs grow feature by feature as the line
  * sweeps over them.
  */
+#include <string.h>
+
 #include "perception_internal.h"
 
+#define ROUNDS 4
 #define DIRECTIONS 6 /* of the line, over half a turn */
 
 /* What one part of the features tells in one keyframe, weighted by 1 / variance: q is a feature's
@@ -108,12 +111,9 @@ static float saved_as_is(const struct grrl_perception *p, const struct grrl_toge
     return total;
 }
 
-float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body,
-                    uint16_t *part, uint16_t *n_part)
+static void sum_all(const struct grrl_perception *p, const struct grrl_together *t,
+                    struct part_sum *all)
 {
-    struct part_sum all[GRRL_MAX_KEYFRAMES];
-    struct part_sum left[GRRL_MAX_KEYFRAMES];
-    uint16_t order[GRRL_MAX_FEATURES];
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         all[k] = (struct part_sum){0};
         for (uint16_t i = 0; i < t->n; i++) {
@@ -121,6 +121,20 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
             add(&all[k], &one, 1.0f);
         }
     }
+}
+
+static struct grrl_vec2 rotate_30(struct grrl_vec2 v)
+{
+    return (struct grrl_vec2){v.x * 0.8660254f - v.y * 0.5f, v.x * 0.5f + v.y * 0.8660254f};
+}
+
+float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body,
+                    uint16_t *part, uint16_t *n_part)
+{
+    struct part_sum all[GRRL_MAX_KEYFRAMES];
+    struct part_sum left[GRRL_MAX_KEYFRAMES];
+    uint16_t order[GRRL_MAX_FEATURES];
+    sum_all(p, t, all);
     for (uint16_t i = 0; i < t->n; i++) {
         order[i] = t->slot[i];
     }
@@ -149,8 +163,132 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
                 }
             }
         }
-        direction = (struct grrl_vec2){direction.x * 0.8660254f - direction.y * 0.5f,
-                                       direction.x * 0.5f + direction.y * 0.8660254f};
+        direction = rotate_30(direction);
+    }
+    return best - now;
+}
+
+/*
+ * Links that cross part along no line, but along two: the quadrants of a cross between them belong
+ * to one link and to the other in turn. From crosses in several directions features go to the
+ * side whose turn and shift leaves less of them.
+ */
+static void cross(const struct grrl_together *t, struct grrl_vec2 direction, bool *is_left)
+{
+    struct grrl_vec2 middle = {0.0f, 0.0f};
+    for (uint16_t i = 0; i < t->n; i++) {
+        middle = grrl_vec2_add(middle, grrl_vec2_scale(t->shape[t->slot[i]], 1.0f / (float)t->n));
+    }
+    for (uint16_t i = 0; i < t->n; i++) {
+        struct grrl_vec2 q = grrl_vec2_sub(t->shape[t->slot[i]], middle);
+        is_left[i] = grrl_vec2_dot(direction, q) * grrl_vec2_cross(direction, q) > 0.0f;
+    }
+}
+
+/* Chi squared that is left of one feature after a part's turn and shift. */
+static float left_over(const struct part_sum *part, const struct part_sum *one)
+{
+    struct grrl_vec2 mean = grrl_vec2_scale(part->q, 1.0f / part->w);
+    struct grrl_vec2 shift = grrl_vec2_scale(part->d, 1.0f / part->w);
+    float inertia = part->qq - grrl_vec2_dot(part->q, mean);
+    float turn = inertia > 1e-6f * part->qq
+                     ? (part->moment - grrl_vec2_cross(part->q, shift)) / inertia
+                     : 0.0f;
+    struct grrl_vec2 q = grrl_vec2_sub(grrl_vec2_scale(one->q, 1.0f / one->w), mean);
+    struct grrl_vec2 d = grrl_vec2_sub(grrl_vec2_scale(one->d, 1.0f / one->w), shift);
+    struct grrl_vec2 rest = {d.x + turn * q.y, d.y - turn * q.x};
+    return one->w * grrl_vec2_dot(rest, rest);
+}
+
+/* Moves features to the side that leaves less of them; returns what both sides save then. */
+static float share_out(const struct grrl_perception *p, const struct grrl_together *t,
+                       const struct part_sum *all, bool *is_left)
+{
+    float excess[GRRL_MAX_FEATURES] = {0.0f}; /* left over on the left more than on the right */
+    float total = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        struct part_sum left = {0};
+        for (uint16_t i = 0; i < t->n; i++) {
+            if (is_left[i]) {
+                struct part_sum one = sum_of(p, t, t->slot[i], k);
+                add(&left, &one, 1.0f);
+            }
+        }
+        struct part_sum right = all[k];
+        add(&right, &left, -1.0f);
+        total += saved_by_both(&left, &all[k]);
+        float rounding = 1e-3f * all[k].w;
+        for (uint16_t i = 0; i < t->n && left.w > rounding && right.w > rounding; i++) {
+            struct part_sum one = sum_of(p, t, t->slot[i], k);
+            excess[i] += one.w > 0.0f ? left_over(&left, &one) - left_over(&right, &one) : 0.0f;
+        }
+    }
+    for (uint16_t i = 0; i < t->n; i++) {
+        is_left[i] = excess[i] < 0.0f;
+    }
+    return total;
+}
+
+static uint16_t take_left(const struct grrl_together *t, const bool *is_left, uint16_t *part)
+{
+    uint16_t n = 0;
+    for (uint16_t i = 0; i < t->n; i++) {
+        if (is_left[i]) {
+            part[n++] = t->slot[i];
+        }
+    }
+    return n;
+}
+
+/* Whether the features of `body` and the others lie among one another, not side by side. */
+static bool lie_across(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body)
+{
+    struct part_sum side[2] = {{0}};
+    for (uint16_t i = 0; i < t->n; i++) {
+        struct grrl_vec2 q = t->shape[t->slot[i]];
+        struct part_sum one = {.w = 1.0f, .q = q, .qq = grrl_vec2_dot(q, q)};
+        add(&side[p->body_of[t->slot[i]] == body ? 0 : 1], &one, 1.0f);
+    }
+    float radius2 = 0.0f; /* the sum of mean squared radii */
+    struct grrl_vec2 apart = {0.0f, 0.0f};
+    for (int i = 0; i < 2; i++) {
+        if (!(side[i].w > 0.0f)) {
+            return false;
+        }
+        struct grrl_vec2 mean = grrl_vec2_scale(side[i].q, 1.0f / side[i].w);
+        radius2 += side[i].qq / side[i].w - grrl_vec2_dot(mean, mean);
+        apart = grrl_vec2_sub(mean, apart);
+    }
+    return grrl_vec2_dot(apart, apart) < radius2;
+}
+
+float grrl_best_cross(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body,
+                      uint16_t *part, uint16_t *n_part)
+{
+    struct part_sum all[GRRL_MAX_KEYFRAMES];
+    uint16_t least = p->config.min_features;
+    bool is_left[GRRL_MAX_FEATURES];
+    uint16_t trial[GRRL_MAX_FEATURES];
+    *n_part = 0;
+    if (!lie_across(p, t, body)) {
+        return 0.0f;
+    }
+    sum_all(p, t, all);
+    float now = saved_as_is(p, t, p->body_of, body, all);
+    float best = now;
+    struct grrl_vec2 direction = {1.0f, 0.0f};
+    for (int turn = 0; turn < DIRECTIONS / 2; turn++) {
+        cross(t, direction, is_left);
+        for (int round = 0; round < ROUNDS; round++) {
+            uint16_t n = take_left(t, is_left, trial);
+            float total = share_out(p, t, all, is_left);
+            if (n >= least && n + least <= t->n && total > best) {
+                best = total;
+                *n_part = n;
+                memcpy(part, trial, n * sizeof *part);
+            }
+        }
+        direction = rotate_30(direction);
     }
     return best - now;
 }

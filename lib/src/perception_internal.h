@@ -99,6 +99,10 @@ struct grrl_together {
 float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
                     uint8_t body, uint16_t *part, uint16_t *n_part);
 
+/* The same for two links that cross: no straight cut parts them. */
+float grrl_best_cross(const struct grrl_perception *p, const struct grrl_together *together,
+                      uint8_t body, uint16_t *part, uint16_t *n_part);
+
 /* By how many standard deviations of chi squared a body's features part along some line more than
  * noise explains; 0: they do not. */
 float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body);
