@@ -1,6 +1,8 @@
 #include "figures.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace grrl_evaluate
 {
@@ -76,18 +78,11 @@ Pushes pushes(const Group &group)
     return {mean, half, percent(at_cap, static_cast<int64_t>(group.trials.size())), ms};
 }
 
-void print_header(std::FILE *file)
-{
-    (void)std::fprintf(file, "%-14s %5s %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s | %14s %5s %6s\n",
-                       "object", "noise", "method", "wrong", "joint", "split", "missed", "feat.",
-                       "calib.", "six", "moved", "pushes", "cap", "ms");
-}
-
-void print_group(std::FILE *file, const Group &group)
+static void print_group(std::FILE *file, const Group &group, int width)
 {
     for (int m = OURS; m < METHODS; m++) {
         Figures f = figures(sum(group, static_cast<Method>(m)), group.trials.size());
-        (void)std::fprintf(file, "%-14.14s %5.3g %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s |",
+        (void)std::fprintf(file, "%-*s %5.3g %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s |", width,
                            m == OURS ? group.object.c_str() : "", group.noise, method_names[m],
                            cell(f.wrong, 2).c_str(), cell(f.wrong_joint, 2).c_str(),
                            cell(f.false_split, 2).c_str(), cell(f.missed, 1).c_str(),
@@ -100,7 +95,18 @@ void print_group(std::FILE *file, const Group &group)
         }
         (void)std::fputc('\n', file);
     }
-    (void)std::fflush(file);
+}
+
+void print_table(std::FILE *file, const std::vector<Group> &groups)
+{
+    size_t width = std::strlen("object");
+    for (const Group &group : groups)
+        width = std::max(width, group.object.size());
+    (void)std::fprintf(file, "%-*s %5s %-8s | %6s %6s %6s %6s %6s | %6s %6s %6s | %14s %5s %6s\n",
+                       static_cast<int>(width), "object", "noise", "method", "wrong", "joint",
+                       "split", "missed", "feat.", "calib.", "six", "moved", "pushes", "cap", "ms");
+    for (const Group &group : groups)
+        print_group(file, group, static_cast<int>(width));
 }
 
 void print_csv(std::FILE *file, const std::vector<Group> &groups)

@@ -42,8 +42,7 @@ Tally sum(const Group &group, Method method);
 Figures figures(const Tally &tally, size_t trials);
 Pushes pushes(const Group &group);
 
-void print_header(std::FILE *file);
-void print_group(std::FILE *file, const Group &group);
+void print_table(std::FILE *file, const std::vector<Group> &groups);
 void print_csv(std::FILE *file, const std::vector<Group> &groups);
 
 /* By gnuplot; empty, or what went wrong. */

@@ -112,9 +112,7 @@ int report(const Options &options, std::vector<Group> groups)
     if (groups.size() > options.noise.size())
         for (Group &all : totals(groups, options.noise))
             groups.push_back(std::move(all));
-    print_header(stdout);
-    for (const Group &group : groups)
-        print_group(stdout, group);
+    print_table(stdout, groups);
     bool good = options.csv.empty() || write_csv(options.csv, groups);
     std::string problem = options.svg.empty() ? "" : draw_svg(options.svg, groups);
     if (!problem.empty())

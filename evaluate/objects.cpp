@@ -96,8 +96,11 @@ Result<std::vector<NamedObject>> select_objects(const std::string &names)
     std::vector<NamedObject> objects;
     for (const std::string &name : split(names.empty() ? object_names() : names)) {
         Result<ObjectSpec> spec = object_of_name(name);
-        if (!spec)
-            return Result<std::vector<NamedObject>>::bad(name + ": " + spec.error);
+        if (!spec) {
+            bool says_which = spec.error.compare(0, name.size(), name) == 0;
+            return Result<std::vector<NamedObject>>::bad((says_which ? "" : name + ": ") +
+                                                         spec.error);
+        }
         objects.push_back({name, *spec.value});
     }
     if (objects.empty())

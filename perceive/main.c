@@ -4,6 +4,7 @@
  * Exit status: 0 fine, 1 the input is wrong or cannot be read, 2 wrong command line.
  */
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,6 +17,9 @@
 
 enum { EXIT_FINE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2 };
 enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
+
+/* Points within less than this, in standard deviations of the noise, show nothing. */
+#define SMALL_WORLD 20.0f
 
 /* A pixel is given to the library as a millimetre. */
 static const float pixel_m = 0.001f;
@@ -197,6 +201,27 @@ static enum grrl_status print_term(const struct grrl_model *model, char *text, s
     return status == GRRL_OK ? grrl_term_print(&store, term, capacity, text, NULL) : status;
 }
 
+/* A file in metres, taken for millimetres, is all noise. */
+static void warn_of_a_small_world(const struct grrl_tracks *tracks, struct unit unit, float noise_m)
+{
+    float low[2] = {INFINITY, INFINITY};
+    float high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < tracks->n_points; i++) {
+        const float at[2] = {tracks->x[i], tracks->y[i]};
+        for (int axis = 0; axis < 2; axis++) {
+            low[axis] = fminf(low[axis], at[axis]);
+            high[axis] = fmaxf(high[axis], at[axis]);
+        }
+    }
+    float extent = fmaxf(high[0] - low[0], high[1] - low[1]);
+    if (extent < SMALL_WORLD * noise_m)
+        (void)fprintf(
+            stderr,
+            "grrl-perceive: warning: all points lie within %.3g %s, and the noise is %.3g "
+            "%s; is the unit right? See --unit\n",
+            (double)(extent / unit.metres), unit.name, (double)(noise_m / unit.metres), unit.name);
+}
+
 static void warn_of_losses(const struct grrl_report *report, const struct grrl_tracks *tracks)
 {
     if (tracks->refused > 0)
@@ -251,6 +276,7 @@ static int report_model(const struct grrl_perceive_options *options,
                                  .tracks = (unsigned)grrl_tracks_count_ids(tracks),
                                  .keyframes = perception.counts.keyframes_high,
                                  .y_down = strcmp(unit.name, "px") == 0};
+    warn_of_a_small_world(tracks, unit, perception.config.noise_m);
     warn_of_losses(&report, tracks);
     if (options->svg != NULL && !write_svg(options->svg, &report))
         return EXIT_INPUT;

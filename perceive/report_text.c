@@ -71,16 +71,18 @@ const char *grrl_report_relation(const struct grrl_report *report, unsigned a, u
 static void print_other_pairs(FILE *file, const struct grrl_report *report)
 {
     const struct grrl_model *model = report->model;
-    (void)fputs("\nother pairs\n", file);
+    const char *heading = "\nother pairs\n";
     for (unsigned a = 0; a < model->n_bodies; a++) {
         for (unsigned b = a + 1; b < model->n_bodies; b++) {
             struct grrl_pair pair;
             const char *relation = grrl_report_relation(report, a, b, &pair);
-            if (pair.relation != GRRL_RELATION_JOINED)
-                (void)fprintf(
-                    file, "  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)\n",
-                    (unsigned)model->body[a].number, (unsigned)model->body[b].number, relation,
-                    (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected);
+            if (pair.relation == GRRL_RELATION_JOINED)
+                continue;
+            (void)fprintf(
+                file, "%s  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)\n",
+                heading, (unsigned)model->body[a].number, (unsigned)model->body[b].number, relation,
+                (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected);
+            heading = "";
         }
     }
 }
@@ -93,11 +95,10 @@ void grrl_report_text(FILE *file, const struct grrl_report *report)
     (void)fprintf(file, "\njoints %u\n", (unsigned)model->n_joints);
     for (unsigned i = 0; i < model->n_joints; i++)
         print_joint(file, report, &model->joint[i]);
-    if (model->n_bodies > 1)
-        print_other_pairs(file, report);
-    (void)fprintf(file, "\n%u frames of %u tracks, %u keyframes, profile %s, noise %.3g %s\n",
-                  report->frames, report->tracks, report->keyframes, report->profile, report->noise,
-                  report->unit);
+    print_other_pairs(file, report);
+    (void)fprintf(file, "\n%u frames of %u tracks, %u keyframe%s, profile %s, noise %.3g %s\n",
+                  report->frames, report->tracks, report->keyframes,
+                  report->keyframes == 1 ? "" : "s", report->profile, report->noise, report->unit);
     (void)fprintf(file, "points dropped: %u outliers, %u refused, %u beyond capacity\n",
                   (unsigned)report->counts->outliers, (unsigned)report->counts->refused,
                   (unsigned)report->counts->overflow);

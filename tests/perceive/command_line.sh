@@ -45,6 +45,13 @@ expect 0 'profile tracker, noise 0.7 mm' --unit mm "$WORK/slide.csv"
 expect 0 'profile camera, noise 1 px' --unit px "$WORK/slide.csv"
 expect 0 'profile tracker, noise 1.5 px' --unit px --profile tracker --noise 1.5 "$WORK/slide.csv"
 
+# the samples that the documentation shows, and one in the wrong unit
+SAMPLES=$(dirname "$0")/../../examples
+expect 0 'pivot (40.1, -19.69) +- (0.62, 0.62) mm, seen from 0 to 40.1 degrees' \
+    --unit mm "$SAMPLES/hinge.csv"
+expect 0 '^revolute 1.000' --handle "$SAMPLES/door.txt"
+expect 0 'all points lie within 1[.].* mm.*is the unit right?' --unit mm "$WORK/hinge.csv"
+
 # the order of rows means nothing, standard input is a file
 { head -1 "$WORK/hinge.csv"; tail -n +2 "$WORK/hinge.csv" | sort -r; } >"$WORK/reversed.csv"
 "$PERCEIVE" --json "$WORK/hinge.csv" >"$WORK/a.json"
