@@ -171,7 +171,7 @@ void agent_publish_status(struct grrl_agent *agent)
     if (agent->config.observe)
         return;
     struct grrl_wire_why why;
-    const struct grrl_learner_usage usage = grrl_learner_usage(&agent->learner);
+    const struct grrl_learner_usage usage = grrl_learner_usage_of(&agent->learner);
     grrl_agent_status_t status = {
         .utime = agent_now_us(agent),
         .session_id = agent->config.session_id,

@@ -59,7 +59,7 @@ static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
     if (!run->options.quiet)
         (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage(&agent.learner).n);
+                     (unsigned)grrl_learner_usage_of(&agent.learner).n);
     save(run);
 }
 

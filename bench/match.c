@@ -58,7 +58,7 @@ static void *build_plan(const struct grrl_graph *graph)
 {
     struct planned *built = allocate(sizeof *built);
     built->graph = *graph;
-    grrl_match_plan(&built->plan, &built->graph, GRRL_ALL_PROPERTIES);
+    grrl_match_plan_of(&built->plan, &built->graph, GRRL_ALL_PROPERTIES);
     return built;
 }
 

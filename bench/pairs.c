@@ -109,8 +109,8 @@ static void take_part(const struct grrl_graph *graph, uint8_t n, struct grrl_gra
 static bool is_isomorphic(const struct grrl_graph *a, const struct grrl_graph *b)
 {
     struct grrl_canonical form[2];
-    must(grrl_canonical(a, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[0]));
-    must(grrl_canonical(b, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[1]));
+    must(grrl_canonical_of(a, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[0]));
+    must(grrl_canonical_of(b, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[1]));
     return grrl_graph_equal(&form[0].graph, &form[1].graph, GRRL_ALL_PROPERTIES);
 }
 

@@ -7,13 +7,10 @@
 #include "baseline.hpp"
 #include "belief.hpp"
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
 extern "C" {
 #include "grrl/grounding.h"
 #include "grrl/perception.h"
 }
-#pragma GCC diagnostic pop
 
 namespace grrl_evaluate
 {

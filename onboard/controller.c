@@ -154,7 +154,7 @@ static void learn(struct onboard_controller *controller, struct onboard_packet *
     count(controller, ONBOARD_STEP_LEARN, start);
     begin_answer(controller, ONBOARD_LESSON, status);
     if (status == GRRL_OK) {
-        const struct grrl_learner_usage usage = grrl_learner_usage(&controller->learner);
+        const struct grrl_learner_usage usage = grrl_learner_usage_of(&controller->learner);
         onboard_put_lesson(&controller->answer, &lesson, &usage);
     }
     add_answer(controller, &controller->hashes.lessons);

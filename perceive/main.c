@@ -83,7 +83,7 @@ static int perceive_handle(const struct grrl_perceive_options *options)
     if (options->noise > 0.0f)
         config.noise_m = options->noise * unit.metres;
     struct grrl_trajectory_fit fit;
-    enum grrl_status status = grrl_trajectory_fit(&handle.trajectory, &config, &fit);
+    enum grrl_status status = grrl_trajectory_fit_of(&handle.trajectory, &config, &fit);
     uint32_t n = handle.trajectory.n;
     grrl_handle_free(&handle);
     if (status == GRRL_ERR_NONE)

@@ -2,9 +2,6 @@
 #ifndef GRRL_SIM_GRRL_C_HPP
 #define GRRL_SIM_GRRL_C_HPP
 
-/* A C struct and a function may share a name (grrl_term_node); in C++ one hides the other. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
 extern "C" {
 #include "grrl/config.h"
 #include "grrl/graph.h"
@@ -13,6 +10,5 @@ extern "C" {
 #include "grrl/status.h"
 #include "grrl/term.h"
 }
-#pragma GCC diagnostic pop
 
 #endif

@@ -169,7 +169,8 @@ static void what_was_learned_can_be_saved(void **state)
         init(&two, learners[i], SEED);
         assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_OK);
         assert_int_equal(file.at, file.size);
-        assert_int_equal(grrl_learner_usage(&two.learner).n, grrl_learner_usage(&one.learner).n);
+        assert_int_equal(grrl_learner_usage_of(&two.learner).n,
+                         grrl_learner_usage_of(&one.learner).n);
         unsigned pushes = run_trials(&one, "RPRP", 11, 10, &a);
         assert_int_equal(run_trials(&two, "RPRP", 11, 10, &b), pushes);
         assert_int_equal(a, b);
@@ -386,9 +387,9 @@ static void a_learner_of_one_experience_works(void **state)
         one.memory.experiences_capacity = 1;
         assert_int_equal(grrl_learner_init(&one.learner, &one.config, &one.memory), GRRL_OK);
         (void)run_trials(&one, "RPR", 1, 10, &hash);
-        assert_int_equal(grrl_learner_usage(&one.learner).n, 1);
-        assert_int_equal(grrl_learner_usage(&one.learner).capacity, 1);
-        assert_true(grrl_learner_usage(&one.learner).evictions > 0);
+        assert_int_equal(grrl_learner_usage_of(&one.learner).n, 1);
+        assert_int_equal(grrl_learner_usage_of(&one.learner).capacity, 1);
+        assert_true(grrl_learner_usage_of(&one.learner).evictions > 0);
     }
 }
 

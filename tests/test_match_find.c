@@ -66,8 +66,8 @@ static unsigned count_mappings(enum grrl_match_kind kind, const struct grrl_grap
     struct grrl_match match;
     uint8_t map[GRRL_MAX_LINKS];
     unsigned n = 0;
-    grrl_match_plan(&plans[0], pattern, GRRL_ALL_PROPERTIES);
-    grrl_match_plan(&plans[1], target, GRRL_ALL_PROPERTIES);
+    grrl_match_plan_of(&plans[0], pattern, GRRL_ALL_PROPERTIES);
+    grrl_match_plan_of(&plans[1], target, GRRL_ALL_PROPERTIES);
     if (planned)
         grrl_match_begin_planned(&match, kind, &plans[0], &plans[1], 20000);
     else
@@ -90,8 +90,8 @@ static void test_every_way_gives_the_same(void **state)
             pattern.label[0] ^= 1;
         grrl_label mask = grrl_random_below(&random, 4) ? GRRL_ALL_PROPERTIES : GRRL_NO_PROPERTIES;
         struct grrl_match_plan plans[2];
-        grrl_match_plan(&plans[0], &pattern, mask);
-        grrl_match_plan(&plans[1], &target, mask);
+        grrl_match_plan_of(&plans[0], &pattern, mask);
+        grrl_match_plan_of(&plans[1], &target, mask);
         for (int kind = 0; kind <= GRRL_MATCH_MONOMORPHISM; kind++) {
             uint8_t map[GRRL_MAX_LINKS];
             enum grrl_match_kind k = (enum grrl_match_kind)kind;
@@ -124,8 +124,8 @@ static void test_trees(void **state)
             support_graph(&random, (uint8_t)(1 + grrl_random_below(&random, 5)), 8, 0,
                           grrl_random_below(&random, 2));
         struct grrl_match_plan plans[2];
-        grrl_match_plan(&plans[0], &pattern, GRRL_ALL_PROPERTIES);
-        grrl_match_plan(&plans[1], &target, GRRL_ALL_PROPERTIES);
+        grrl_match_plan_of(&plans[0], &pattern, GRRL_ALL_PROPERTIES);
+        grrl_match_plan_of(&plans[1], &target, GRRL_ALL_PROPERTIES);
         for (uint8_t p = 0; p < pattern.n; p++) {
             uint32_t images;
             uint8_t map[GRRL_MAX_LINKS];
@@ -149,7 +149,7 @@ static void test_trees(void **state)
                          GRRL_OK);
     struct grrl_match_plan plan;
     uint32_t images;
-    grrl_match_plan(&plan, &loop, GRRL_ALL_PROPERTIES);
+    grrl_match_plan_of(&plan, &loop, GRRL_ALL_PROPERTIES);
     assert_int_equal(grrl_match_tree(&plan, &plan, 0, &images, NULL), GRRL_ERR_UNDECIDED);
 }
 
@@ -224,13 +224,13 @@ static void test_a_part_stays_a_part(void **state)
             struct grrl_signature small;
             struct grrl_signature large;
             uint8_t map[GRRL_MAX_LINKS];
-            grrl_signature(&part, GRRL_ALL_PROPERTIES, &small);
-            grrl_signature(&target, GRRL_ALL_PROPERTIES, &large);
+            grrl_signature_of(&part, GRRL_ALL_PROPERTIES, &small);
+            grrl_signature_of(&target, GRRL_ALL_PROPERTIES, &large);
             assert_true(grrl_signature_within(&small, &large, false));
             struct grrl_paths few;
             struct grrl_paths many;
-            grrl_paths(&part, &few);
-            grrl_paths(&target, &many);
+            grrl_paths_of(&part, &few);
+            grrl_paths_of(&target, &many);
             assert_true(grrl_paths_within(&few, &many));
             assert_true(grrl_signature_within(&small, &large, true));
             assert_int_equal(grrl_match_find(GRRL_MATCH_MONOMORPHISM, &part, &target,

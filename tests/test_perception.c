@@ -303,8 +303,8 @@ static void order_and_ids_of_points_do_not_matter(void **state)
     }
     struct grrl_canonical a;
     struct grrl_canonical b;
-    assert_int_equal(grrl_canonical(&graphs[0], GRRL_ALL_PROPERTIES, 2000, &a), GRRL_OK);
-    assert_int_equal(grrl_canonical(&graphs[1], GRRL_ALL_PROPERTIES, 2000, &b), GRRL_OK);
+    assert_int_equal(grrl_canonical_of(&graphs[0], GRRL_ALL_PROPERTIES, 2000, &a), GRRL_OK);
+    assert_int_equal(grrl_canonical_of(&graphs[1], GRRL_ALL_PROPERTIES, 2000, &b), GRRL_OK);
     assert_int_equal(graphs[0].n, 3);
     assert_true(grrl_graph_equal(&a.graph, &b.graph, GRRL_ALL_PROPERTIES));
 }

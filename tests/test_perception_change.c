@@ -277,7 +277,7 @@ static bool same_structure(void)
     grrl_model_graph(grrl_perception_model(&perception), &graph[0], NULL, NULL);
     grrl_model_graph(grrl_perception_model(&other), &graph[1], NULL, NULL);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(grrl_canonical(&graph[i], GRRL_ALL_PROPERTIES, 20000, &canonical[i]),
+        assert_int_equal(grrl_canonical_of(&graph[i], GRRL_ALL_PROPERTIES, 20000, &canonical[i]),
                          GRRL_OK);
     }
     return grrl_graph_equal(&canonical[0].graph, &canonical[1].graph, GRRL_ALL_PROPERTIES);

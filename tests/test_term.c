@@ -278,7 +278,7 @@ static void test_conjunctions_merge(void **state)
     grrl_term all;
     assert_int_equal(grrl_term_make(store, GRRL_TERM_AND, parts, 3, &all), GRRL_OK);
     support_assert_prints(store, all, "l1 & l2 & l3 & l4 & R(l5 & l6, l7)");
-    assert_int_equal(grrl_term_node(store, all)->depth, 1);
+    assert_int_equal(grrl_term_node_at(store, all)->depth, 1);
 }
 
 static void test_print_cut(void **state)
@@ -425,7 +425,7 @@ static grrl_term random_term(struct grrl_term_store *store, struct grrl_random *
             (enum grrl_term_kind)(GRRL_TERM_REVOLUTE + grrl_random_below(random, 4));
         uint16_t from = (uint16_t)grrl_random_below(random, n - taken + 1u);
         for (uint16_t i = from; i < from + taken; i++)
-            if (grrl_term_node(store, pool[i])->depth == GRRL_MAX_TERM_DEPTH)
+            if (grrl_term_node_at(store, pool[i])->depth == GRRL_MAX_TERM_DEPTH)
                 kind = GRRL_TERM_AND; /* no further relation may be around it */
         assert_int_equal(grrl_term_make(store, kind, pool + from, taken, &pool[from]), GRRL_OK);
         for (uint16_t i = (uint16_t)(from + 1); i + taken - 1 < n; i++)
@@ -453,7 +453,8 @@ static void test_random_round_trips(void **state)
         assert_string_equal(printed, text);
         assert_int_equal(grrl_term_print(store, copy, sizeof printed, printed, NULL), GRRL_OK);
         assert_string_equal(printed, text);
-        assert_int_equal(grrl_term_node(store, term)->depth, grrl_term_node(store, again)->depth);
+        assert_int_equal(grrl_term_node_at(store, term)->depth,
+                         grrl_term_node_at(store, again)->depth);
         struct grrl_substitution binding = {.n = 0};
         assert_int_equal(grrl_term_unify(store, term, again, 0, &binding), GRRL_OK);
         assert_int_equal(binding.n, 0);

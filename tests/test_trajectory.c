@@ -53,7 +53,7 @@ static struct grrl_trajectory_fit fit(struct grrl_trajectory trajectory)
     struct grrl_trajectory_config config;
     grrl_trajectory_config_default(&config);
     struct grrl_trajectory_fit result;
-    assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_OK);
+    assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_OK);
     return result;
 }
 
@@ -206,25 +206,25 @@ static void test_what_is_refused(void **state)
     grrl_trajectory_config_default(&config);
     struct grrl_trajectory trajectory = line(&random, 50, 0.5, 0.001);
     trajectory.n = GRRL_TRAJECTORY_MIN_SAMPLES - 1;
-    assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_ERR_NONE);
+    assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NONE);
     trajectory.n = GRRL_TRAJECTORY_MIN_SAMPLES;
-    assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_OK);
+    assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_OK);
     trajectory.dimensions = 4;
-    assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_ARGUMENT);
     trajectory.dimensions = 3;
     float *const fields[] = {&config.noise_m, &config.effective_samples, &config.radius_m};
     for (int i = 0; i < 9; i++) {
         float kept = *fields[i % 3];
         *fields[i % 3] = i < 3 ? 0.0f : i < 6 ? NAN : INFINITY;
-        assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_ERR_ARGUMENT);
+        assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_ARGUMENT);
         *fields[i % 3] = kept;
     }
     for (int i = 0; i < 3; i++) {
         rows[7] = i == 0 ? NAN : i == 1 ? INFINITY : -1001.0f;
-        assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_ERR_NUMBER);
+        assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NUMBER);
     }
     memset(rows, 0, sizeof rows);
-    assert_int_equal(grrl_trajectory_fit(&trajectory, &config, &result), GRRL_ERR_NONE);
+    assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NONE);
 }
 
 int main(void)

@@ -241,7 +241,7 @@ static int run_canonical(const struct options *options)
         return EXIT_NO;
     struct grrl_canonical canonical;
     grrl_label mask = options->ignore_properties ? GRRL_NO_PROPERTIES : GRRL_ALL_PROPERTIES;
-    enum grrl_status status = grrl_canonical(&s.graph, mask, GRRL_CANONICAL_BUDGET, &canonical);
+    enum grrl_status status = grrl_canonical_of(&s.graph, mask, GRRL_CANONICAL_BUDGET, &canonical);
     if (status != GRRL_OK)
         return fail(status);
     struct grrl_name names[GRRL_MAX_LINKS];

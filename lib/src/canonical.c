@@ -385,8 +385,8 @@ static uint32_t hash_graph(const struct grrl_graph *graph)
     return hash;
 }
 
-enum grrl_status grrl_canonical(const struct grrl_graph *graph, grrl_label mask, uint32_t budget,
-                                struct grrl_canonical *canonical)
+enum grrl_status grrl_canonical_of(const struct grrl_graph *graph, grrl_label mask, uint32_t budget,
+                                   struct grrl_canonical *canonical)
 {
     struct search search;
     search.graph = graph;

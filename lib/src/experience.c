@@ -68,8 +68,8 @@ bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experi
 {
     struct grrl_canonical bare;
     struct grrl_canonical full;
-    if (grrl_canonical(graph, GRRL_NO_PROPERTIES, GRRL_CANONICAL_BUDGET, &bare) != GRRL_OK ||
-        grrl_canonical(graph, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &full) != GRRL_OK) {
+    if (grrl_canonical_of(graph, GRRL_NO_PROPERTIES, GRRL_CANONICAL_BUDGET, &bare) != GRRL_OK ||
+        grrl_canonical_of(graph, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &full) != GRRL_OK) {
         return false;
     }
     memset(state, 0, sizeof *state);
@@ -88,8 +88,8 @@ bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experi
             }
         }
     }
-    grrl_signature(graph, GRRL_ALL_PROPERTIES, &state->signature);
-    grrl_paths(graph, &state->paths);
+    grrl_signature_of(graph, GRRL_ALL_PROPERTIES, &state->signature);
+    grrl_paths_of(graph, &state->paths);
     if (order != NULL) {
         memcpy(order, full.order, graph->n);
     }

@@ -270,7 +270,7 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
     return GRRL_OK;
 }
 
-struct grrl_learner_usage grrl_learner_usage(const struct grrl_learner *learner)
+struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learner)
 {
     if (learner->config.policy.kind == GRRL_POLICY_LEARN) {
         return (struct grrl_learner_usage){learner->cases.n, learner->cases.capacity,

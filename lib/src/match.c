@@ -219,7 +219,7 @@ enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label ma
 {
     enum grrl_status result = GRRL_OK;
     struct grrl_match_plan plan;
-    grrl_match_plan(&plan, graph, mask);
+    grrl_match_plan_of(&plan, graph, mask);
     for (uint8_t i = 0; i < graph->n; i++)
         orbit[i] = i;
     for (uint8_t i = 1; i < graph->n; i++) {

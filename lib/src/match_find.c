@@ -17,7 +17,7 @@ static enum grrl_status find_canonical(const struct grrl_match_plan *pattern,
         struct grrl_graph graph = *plan->graph;
         memcpy(graph.label, plan->label, sizeof graph.label[0] * graph.n); /* under the mask */
         enum grrl_status status =
-            grrl_canonical(&graph, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[i]);
+            grrl_canonical_of(&graph, GRRL_ALL_PROPERTIES, GRRL_CANONICAL_BUDGET, &form[i]);
         if (status != GRRL_OK)
             return status;
     }
@@ -63,7 +63,7 @@ enum grrl_status grrl_match_find(enum grrl_match_kind kind, const struct grrl_gr
     if (status != GRRL_ERR_UNDECIDED)
         return status;
     struct grrl_match_plan plan[2];
-    grrl_match_plan(&plan[0], pattern, mask);
-    grrl_match_plan(&plan[1], target, mask);
+    grrl_match_plan_of(&plan[0], pattern, mask);
+    grrl_match_plan_of(&plan[1], target, mask);
     return grrl_match_find_planned(kind, &plan[0], &plan[1], budget - first, map);
 }

@@ -213,7 +213,8 @@ static void order_planned(struct grrl_match_plan *plan)
     }
 }
 
-void grrl_match_plan(struct grrl_match_plan *plan, const struct grrl_graph *graph, grrl_label mask)
+void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *graph,
+                        grrl_label mask)
 {
     grrl_match_glance(plan, graph, mask);
     grrl_match_colour(plan);
@@ -222,7 +223,7 @@ void grrl_match_plan(struct grrl_match_plan *plan, const struct grrl_graph *grap
     count_surroundings(plan);
     rank_colours(plan);
     order_planned(plan);
-    grrl_signature(graph, mask, &plan->monotone);
+    grrl_signature_of(graph, mask, &plan->monotone);
 }
 
 bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,

@@ -75,7 +75,7 @@ static void next_chain(struct chain *chain)
         at + 1 < LONGEST ? grrl_graph_neighbours(chain->graph, link) & ~chain->seen : 0;
 }
 
-void grrl_paths(const struct grrl_graph *graph, struct grrl_paths *paths)
+void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths)
 {
     unsigned chains = 0;
     memset(paths, 0, sizeof *paths);

@@ -113,8 +113,8 @@ static void count_labels(const struct grrl_graph *graph, grrl_label mask, struct
     }
 }
 
-void grrl_signature(const struct grrl_graph *graph, grrl_label mask,
-                    struct grrl_signature *signature)
+void grrl_signature_of(const struct grrl_graph *graph, grrl_label mask,
+                       struct grrl_signature *signature)
 {
     struct counts counts = {0};
     count_shape(graph, counts.of[0]);

@@ -30,7 +30,7 @@ void grrl_term_release(struct grrl_term_store *store, uint16_t mark)
     store->used = mark;
 }
 
-const struct grrl_term_node *grrl_term_node(const struct grrl_term_store *store, grrl_term term)
+const struct grrl_term_node *grrl_term_node_at(const struct grrl_term_store *store, grrl_term term)
 {
     assert(grrl_term_valid(store, term));
     return &store->nodes[term];

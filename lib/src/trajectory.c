@@ -482,9 +482,9 @@ static void fit_models(const struct view *view, const struct grrl_trajectory_con
     describe_circle(view, &circle, fit);
 }
 
-enum grrl_status grrl_trajectory_fit(const struct grrl_trajectory *trajectory,
-                                     const struct grrl_trajectory_config *config,
-                                     struct grrl_trajectory_fit *fit)
+enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory,
+                                        const struct grrl_trajectory_config *config,
+                                        struct grrl_trajectory_fit *fit)
 {
     if (trajectory->dimensions < 2 || trajectory->dimensions > 3 ||
         !grrl_is_finite(config->noise_m) || !(config->noise_m > 0.0f) ||

@@ -152,7 +152,7 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     if (!run->quiet)
         (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage(&agent.learner).n);
+                     (unsigned)grrl_learner_usage_of(&agent.learner).n);
     (void)fflush(stdout);
 }
 

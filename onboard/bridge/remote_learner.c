@@ -123,7 +123,7 @@ void grrl_learner_abandon_trial(struct grrl_learner *learner)
     (void)learner;
 }
 
-struct grrl_learner_usage grrl_learner_usage(const struct grrl_learner *learner)
+struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learner)
 {
     (void)learner;
     return usage;

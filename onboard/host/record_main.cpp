@@ -8,13 +8,9 @@
 #include "supervisor.hpp"
 #include "world.hpp"
 
-/* A struct and a function of the library share the name grrl_canonical: fine in C. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
 extern "C" {
 #include "controller.h"
 }
-#pragma GCC diagnostic pop
 
 using namespace grrl_sim;
 

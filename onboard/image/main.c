@@ -100,7 +100,7 @@ static void write_memory(void)
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
-    const struct grrl_learner_usage used = grrl_learner_usage(&controller.learner);
+    const struct grrl_learner_usage used = grrl_learner_usage_of(&controller.learner);
     write_line("used experiences", used.n);
     write_line("used features", controller.learner.perception.counts.features_high);
     write_line("used keyframes", controller.learner.perception.counts.keyframes_high);

@@ -10,14 +10,10 @@
 
 #include "node.hpp"
 
-/* A struct and a function of the library share the name grrl_canonical: fine in C. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
 extern "C" {
 #include "agent.h"
 #include "fuzz.h"
 }
-#pragma GCC diagnostic pop
 
 using namespace grrl_sim;
 

@@ -41,7 +41,7 @@ static void there_and_back(grrl_term term)
     struct grrl_canonical canonical;
     if (grrl_graph_from_term(&store, term, &graph, names, edges, &n_edges, &error) != GRRL_OK)
         return;
-    (void)!grrl_canonical(&graph, GRRL_ALL_PROPERTIES, BUDGET, &canonical);
+    (void)!grrl_canonical_of(&graph, GRRL_ALL_PROPERTIES, BUDGET, &canonical);
     grrl_term rebuilt;
     enum grrl_status status =
         grrl_graph_to_term(&store, &graph, names, edges, n_edges, true, &rebuilt);

@@ -36,7 +36,7 @@ static void test_same_answers(void **state)
         const struct grrl_graph *const patterns[] = {&pattern, &part};
         void *boost_target = bench_boost.build(&target);
         struct grrl_match_plan target_plan;
-        grrl_match_plan(&target_plan, &target, GRRL_ALL_PROPERTIES);
+        grrl_match_plan_of(&target_plan, &target, GRRL_ALL_PROPERTIES);
         for (int kind = 0; kind <= GRRL_MATCH_MONOMORPHISM; kind++) {
             void *boost_pattern = bench_boost.build(patterns[kind]);
             uint8_t map[GRRL_MAX_LINKS];
@@ -44,7 +44,7 @@ static void test_same_answers(void **state)
                 grrl_match_find((enum grrl_match_kind)kind, patterns[kind], &target,
                                 GRRL_ALL_PROPERTIES, GRRL_MATCH_BUDGET, map);
             struct grrl_match_plan plan;
-            grrl_match_plan(&plan, patterns[kind], GRRL_ALL_PROPERTIES);
+            grrl_match_plan_of(&plan, patterns[kind], GRRL_ALL_PROPERTIES);
             assert_int_equal(grrl_match_find_planned((enum grrl_match_kind)kind, &plan,
                                                      &target_plan, GRRL_MATCH_BUDGET, map),
                              status);

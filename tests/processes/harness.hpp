@@ -17,16 +17,12 @@
 #include "bad_bus.hpp"
 #include "node.hpp"
 
-/* A struct and a function of the library share the name grrl_canonical: fine in C. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wshadow"
 extern "C" {
 #include <cmocka.h>
 
 #include "agent.h"
 #include "grrl/experience.h"
 }
-#pragma GCC diagnostic pop
 
 namespace harness
 {

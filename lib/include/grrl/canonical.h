@@ -21,8 +21,8 @@ struct grrl_canonical {
  * Two graphs get the same `graph` (and hash) exactly if they are isomorphic under the mask.
  * GRRL_ERR_UNDECIDED beyond `budget` refinements (GRRL_CANONICAL_BUDGET is plenty for mechanisms).
  */
-GRRL_MUST_USE enum grrl_status grrl_canonical(const struct grrl_graph *graph, grrl_label mask,
-                                              uint32_t budget, struct grrl_canonical *canonical);
+GRRL_MUST_USE enum grrl_status grrl_canonical_of(const struct grrl_graph *graph, grrl_label mask,
+                                                 uint32_t budget, struct grrl_canonical *canonical);
 
 #ifndef GRRL_CANONICAL_BUDGET
 #define GRRL_CANONICAL_BUDGET 2000

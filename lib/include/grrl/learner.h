@@ -126,7 +126,7 @@ GRRL_MUST_USE enum grrl_status grrl_learner_learn(struct grrl_learner *learner, 
 /* Forgets the trial, nothing is learned from a push without an outcome. */
 void grrl_learner_abandon_trial(struct grrl_learner *learner);
 
-struct grrl_learner_usage grrl_learner_usage(const struct grrl_learner *learner);
+struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learner);
 
 /*
  * All that was learned, whatever the policy, as bytes: what grrl_experience_save writes, then what

@@ -9,7 +9,7 @@
  * structure for monomorphism.
  *
  * One answer: grrl_match_find, or grrl_match_find_planned for graphs that are matched often: each
- * has a plan made once by grrl_match_plan. All mappings: grrl_match_begin (or
+ * has a plan made once by grrl_match_plan_of. All mappings: grrl_match_begin (or
  * grrl_match_begin_planned), grrl_match_fix if wanted, then grrl_match_next until it no longer
  * returns GRRL_OK.
  */
@@ -77,7 +77,8 @@ struct grrl_match {
  * Makes the plan of a graph, which must outlive it and stay as it is; mask says which properties
  * count. Cost: a few hundred nanoseconds, linear in links and joints but for a sort of the links.
  */
-void grrl_match_plan(struct grrl_match_plan *plan, const struct grrl_graph *graph, grrl_label mask);
+void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *graph,
+                        grrl_label mask);
 
 /*
  * One mapping of pattern into target, or that there is none: map[i] (GRRL_MAX_LINKS of them) is the

@@ -25,8 +25,8 @@ struct grrl_signature {
 };
 
 /* mask: the properties that count. Cost: linear in the pairs of joints that share a link. */
-void grrl_signature(const struct grrl_graph *graph, grrl_label mask,
-                    struct grrl_signature *signature);
+void grrl_signature_of(const struct grrl_graph *graph, grrl_label mask,
+                       struct grrl_signature *signature);
 
 /* Whether a graph with the first signature could be a sub-structure of one with the second, made
  * under the same mask; shape_only: whatever the properties. False is certain. */
@@ -53,7 +53,7 @@ struct grrl_paths {
 };
 
 /* Cost: a step for each chain of up to six joints, at most some thousands; beyond, all is full. */
-void grrl_paths(const struct grrl_graph *graph, struct grrl_paths *paths);
+void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths);
 
 /* Whether a graph with the first could be a sub-structure of one with the second. False is
  * certain. */

@@ -112,7 +112,7 @@ uint16_t grrl_term_mark(const struct grrl_term_store *store);
 void grrl_term_release(struct grrl_term_store *store, uint16_t mark);
 
 /* The node of a term; the term must be one of this store. */
-const struct grrl_term_node *grrl_term_node(const struct grrl_term_store *store, grrl_term term);
+const struct grrl_term_node *grrl_term_node_at(const struct grrl_term_store *store, grrl_term term);
 
 /*
  * The number of an atom, added when it is new. An atom is a lower-case letter followed by letters,

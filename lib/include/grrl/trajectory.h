@@ -67,8 +67,8 @@ void grrl_trajectory_config_default(struct grrl_trajectory_config *config);
  * position that is not finite or beyond 1 km; GRRL_ERR_NONE: too few samples, or all in one place.
  * Cost: some 80 passes over the samples.
  */
-GRRL_MUST_USE enum grrl_status grrl_trajectory_fit(const struct grrl_trajectory *trajectory,
-                                                   const struct grrl_trajectory_config *config,
-                                                   struct grrl_trajectory_fit *fit);
+GRRL_MUST_USE enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory,
+                                                      const struct grrl_trajectory_config *config,
+                                                      struct grrl_trajectory_fit *fit);
 
 #endif
