@@ -57,9 +57,10 @@ static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
         run->pushes += event->pushes;
     }
     if (!run->options.quiet)
-        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
-                     event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage_of(&agent.learner).n);
+        (void)printf(
+            "trial %" PRId32 ": %" PRId32 " pushes, %s, %u %s\n", event->trial_id, event->pushes,
+            outcomes[event->outcome], (unsigned)grrl_learner_usage_of(&agent.learner).n,
+            run->options.learner.policy.kind == GRRL_POLICY_LEARN ? "cases" : "experiences");
     save(run);
 }
 

@@ -93,6 +93,16 @@ static bool parse_float(const char *name, const char *text, const char *right, f
     return true;
 }
 
+/* A parameter of the policy; the library knows which values are in its range. */
+static bool parse_parameter(const char *name, const char *text, const char *right,
+                            struct grrl_policy_config *policy, float *value)
+{
+    const char *field = "";
+    if (!parse_float(name, text, right, value))
+        return false;
+    return grrl_policy_config_check(policy, &field) == GRRL_OK || bad(name, text, right);
+}
+
 static bool parse_unsigned(const char *name, const char *text, unsigned long long low,
                            unsigned long long high, const char *right, unsigned long long *value)
 {
@@ -165,13 +175,13 @@ static bool take(enum option_id id, const char *text, struct grrl_agent_options 
         options->learner.seed = n;
         return good;
     case OPT_ALPHA:
-        return parse_float("alpha", text, "a number above 0 to 1", &policy->alpha);
+        return parse_parameter("alpha", text, "a number above 0 to 1", policy, &policy->alpha);
     case OPT_GAMMA:
-        return parse_float("gamma", text, "a number from 0 to below 1", &policy->gamma);
+        return parse_parameter("gamma", text, "a number from 0 to below 1", policy, &policy->gamma);
     case OPT_BETA:
-        return parse_float("beta", text, "a number from 0", &policy->beta);
+        return parse_parameter("beta", text, "a number from 0 to 1000", policy, &policy->beta);
     case OPT_Z:
-        return parse_float("z", text, "a number from 0", &policy->z);
+        return parse_parameter("z", text, "a number from 0 to 1000", policy, &policy->z);
     case OPT_NOISE:
         return parse_noise(text, &options->learner.perception.noise_m);
     case OPT_OBSERVE:
@@ -195,11 +205,6 @@ static bool take(enum option_id id, const char *text, struct grrl_agent_options 
 
 static bool consistent(const struct grrl_agent_options *options)
 {
-    const char *field = "";
-    if (grrl_policy_config_check(&options->learner.policy, &field) != GRRL_OK) {
-        (void)fprintf(stderr, "grrl-agent: --%s is out of its range, see --help\n", field);
-        return false;
-    }
     if (options->quiet && options->explain) {
         (void)fprintf(stderr, "grrl-agent: --quiet and --explain contradict each other\n");
         return false;

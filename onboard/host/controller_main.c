@@ -140,12 +140,14 @@ int main(int argc, char **argv)
             path = optarg;
         else if (id == 'h' || id == 'v')
             return printf("%s", id == 'h' ? help : "grrl-controller " GRRL_VERSION "\n") < 0;
-        else if (id == '?' || (id == 'd' && !take_number("damage", optarg, UINT32_MAX, &every)) ||
+        else if (id == '?')
+            return fputs("Try grrl-controller --help\n", stderr) < 0 ? 1 : 2;
+        else if ((id == 'd' && !take_number("damage", optarg, UINT32_MAX, &every)) ||
                  (id == 'r' && !take_number("seed", optarg, UINT64_MAX, &seed)))
             return 2;
     }
     if (path == NULL || optind < argc) {
-        (void)fprintf(stderr, "grrl-controller: %s; try grrl-controller --help\n",
+        (void)fprintf(stderr, "grrl-controller: %s\nTry grrl-controller --help\n",
                       path == NULL ? "--socket is needed" : "there are no arguments");
         return 2;
     }

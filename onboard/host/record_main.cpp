@@ -1,5 +1,7 @@
 /* grrl-record OBJECT TRIALS SEED POLICY RECORDING: a run of the simulated world and the controller
  * in one process, as the packets the controller was given. */
+#include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -155,18 +157,51 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, uint32_t number)
     return pushes;
 }
 
+const char help[] =
+    "Usage: grrl-record OBJECT TRIALS SEED learn|paper RECORDING\n"
+    "Runs the simulated world and the controller in one process, and writes the packets that the\n"
+    "controller was given; grrl-replay and the images in onboard/ read them.\n\n"
+    "  --help     print this text\n"
+    "  --version  print the version\n\n"
+    "Exit status: 0 fine; 1 trouble; 2 wrong command line.\n";
+
+/* Whole numbers, nothing behind them. */
+bool take_number(const char *text, uint64_t low, uint64_t high, uint64_t &value)
+{
+    char *end = nullptr;
+    errno = 0;
+    value = std::strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0 && value >= low &&
+           value <= high;
+}
+
+int wrong_usage(const char *what)
+{
+    (void)std::fprintf(stderr, "grrl-record: %s\nTry grrl-record --help\n", what);
+    return 2;
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-    const std::string policy = argc == 6 ? argv[4] : "";
-    if (policy != "learn" && policy != "paper") {
-        (void)std::fprintf(stderr, "usage: grrl-record OBJECT TRIALS SEED learn|paper RECORDING\n");
-        return 2;
-    }
+    const std::string first = argc == 2 ? argv[1] : "";
+    if (first == "--help")
+        return std::fputs(help, stdout) < 0;
+    if (first == "--version")
+        return std::puts("grrl-record " GRRL_VERSION) < 0;
+    if (argc != 6)
+        return wrong_usage("expected OBJECT TRIALS SEED POLICY RECORDING");
+    uint64_t trials = 0;
+    uint64_t seed = 0;
+    const std::string policy = argv[4];
+    if (!take_number(argv[2], 1, 1000000, trials))
+        return wrong_usage("TRIALS must be a number from 1 to 1000000");
+    if (!take_number(argv[3], 0, UINT64_MAX, seed))
+        return wrong_usage("SEED must be a number from 0");
+    if (policy != "learn" && policy != "paper")
+        return wrong_usage("POLICY must be learn or paper");
     Result<ObjectSpec> object = object_from_text(argv[1]);
-    int trials = std::atoi(argv[2]);
-    uint64_t seed = std::strtoull(argv[3], nullptr, 10);
     Run run;
     if (object)
         run.file = std::fopen(argv[5], "wb");
@@ -177,8 +212,8 @@ int main(int argc, char **argv)
     }
     open(run, seed, policy == "learn" ? GRRL_POLICY_LEARN : GRRL_POLICY_PAPER);
     (void)std::printf("pushes");
-    for (int i = 1; i <= trials && !run.failed; i++)
-        (void)std::printf(" %d", trial(run, *object.value, seed, static_cast<uint32_t>(i)));
+    for (uint32_t i = 1; i <= trials && !run.failed; i++)
+        (void)std::printf(" %d", trial(run, *object.value, seed, i));
     (void)std::printf("\n");
     if (!send(run, ONBOARD_CLOSE) || std::fclose(run.file) != 0 || run.failed) {
         (void)std::fprintf(stderr, "grrl-record: %s is not complete\n", argv[5]);

@@ -18,7 +18,10 @@ refused 2 "$AGENT" --polcy learn
 refused 2 "$AGENT" --policy lern
 refused 2 "$AGENT" --alpha 0
 refused 2 "$AGENT" --alpha 0.5x
+refused 2 "$AGENT" --alpha 2
+grep -q -e '--alpha 2: must be a number above 0 to 1' err.txt || fail "--alpha 2: $(cat err.txt)"
 refused 2 "$AGENT" --gamma 1
+refused 2 "$AGENT" --z 1001
 refused 2 "$AGENT" --beta nan
 refused 2 "$AGENT" --noise 0
 refused 2 "$AGENT" --seed -1
