@@ -74,9 +74,10 @@ void add_learn(std::vector<Policy> &table)
                             [](grrl_learner_config &c) { c.policy.cases.mismatch = 0.0f; }));
     table.push_back(changed("learn", "no-bound", "the best estimate, not the best bound",
                             [](grrl_learner_config &c) { c.policy.cases.bound = 0.0f; }));
-    table.push_back(changed("learn", "no-doubt", "older rewards count whatever the trial brings",
-                            [](grrl_learner_config &c) { c.policy.cases.doubt = 0.0f; }));
-    table.push_back(changed("learn", "no-present", "rewards of the running trial count no more",
+    table.push_back(
+        changed("learn", "no-doubt", "older rewards count whatever the trial brings",
+                [](grrl_learner_config &c) { c.policy.cases.confidence = GRRL_MAX_REWARD; }));
+    table.push_back(changed("learn", "no-present", "newer rewards count no more than older ones",
                             [](grrl_learner_config &c) { c.policy.cases.present = 0.0f; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         table.push_back(changed("learn", std::string("no-") + parts[i],

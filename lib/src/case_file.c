@@ -5,7 +5,12 @@
 #include "record.h"
 
 /* The layout is described in case_base.h. */
-enum { FILE_VERSION = 1, HEADER_BYTES = 20, CASE_BYTES = GRRL_CONTEXT_PARTS + 9 };
+enum {
+    FILE_VERSION = 2,
+    HEADER_BYTES = 20,
+    LOG_ODDS_BYTES = 4,
+    CASE_BYTES = GRRL_CONTEXT_PARTS + 14
+};
 
 _Static_assert((int)GRRL_RECORD_BYTES >= (int)HEADER_BYTES &&
                    (int)GRRL_RECORD_BYTES >= (int)CASE_BYTES,
@@ -25,14 +30,20 @@ enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
     grrl_record_put(&record, base->n, 4);
     grrl_record_put(&record, base->clock, 4);
     enum grrl_status status = grrl_record_write(&record);
+    if (status == GRRL_OK) {
+        grrl_record_put_float(&record, base->log_odds);
+        status = grrl_record_write(&record);
+    }
     for (uint32_t i = 0; i < base->n && status == GRRL_OK; ++i) {
         const struct grrl_case *met = &base->cases[i];
         for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; ++part) {
             grrl_record_put(&record, met->context.part[part], 1);
         }
         grrl_record_put(&record, met->n, 1);
+        grrl_record_put(&record, met->n_new, 1);
         grrl_record_put(&record, met->used_at, 4);
         grrl_record_put_float(&record, met->value);
+        grrl_record_put_float(&record, met->value_new);
         status = grrl_record_write(&record);
     }
     return status;
@@ -62,6 +73,22 @@ static enum grrl_status read_header(const struct grrl_case_base *base, struct gr
     if (*n > base->capacity) {
         return GRRL_ERR_FULL;
     }
+    return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
+}
+
+/* Written so that a NaN is in no range. */
+static bool is_within_most(float x)
+{
+    return x >= -GRRL_MAX_REWARD && x <= GRRL_MAX_REWARD;
+}
+
+static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odds)
+{
+    if (grrl_record_read(record, LOG_ODDS_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+        return GRRL_ERR_IO;
+    }
+    *log_odds = grrl_record_take_float(record);
+    bool fine = grrl_record_check(record, LOG_ODDS_BYTES) == GRRL_OK && is_within_most(*log_odds);
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
@@ -98,11 +125,13 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
         met.context.part[part] = (uint8_t)grrl_record_take(record, 1);
     }
     met.n = (uint8_t)grrl_record_take(record, 1);
+    met.n_new = (uint8_t)grrl_record_take(record, 1);
     met.used_at = (uint32_t)grrl_record_take(record, 4);
     met.value = grrl_record_take_float(record);
+    met.value_new = grrl_record_take_float(record);
     bool fine = grrl_record_check(record, CASE_BYTES) == GRRL_OK && is_context(&met.context) &&
-                met.n > 0 && met.used_at <= clock && met.value >= -GRRL_MAX_REWARD &&
-                met.value <= GRRL_MAX_REWARD && is_new(base, &met);
+                (met.n > 0 || met.n_new > 0) && met.used_at <= clock && is_within_most(met.value) &&
+                is_within_most(met.value_new) && is_new(base, &met);
     if (!fine) {
         return GRRL_ERR_CORRUPT;
     }
@@ -118,6 +147,10 @@ enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
     uint32_t clock = 0;
     grrl_cases_clear(base);
     enum grrl_status status = read_header(base, &record, &n, &clock);
+    float log_odds = 0.0f;
+    if (status == GRRL_OK) {
+        status = read_log_odds(&record, &log_odds);
+    }
     for (uint32_t i = 0; i < n && status == GRRL_OK; ++i) {
         status = read_case(base, &record, clock);
     }
@@ -129,6 +162,7 @@ enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
     *lost = n - base->n;
     base->high_water = base->n;
     base->clock = clock;
+    base->log_odds = log_odds;
     return status;
 }
 

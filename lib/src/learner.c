@@ -69,7 +69,7 @@ void grrl_learner_abandon_trial(struct grrl_learner *learner)
     memset(&learner->recall, 0, sizeof learner->recall);
     memset(&learner->attempts, 0, sizeof learner->attempts);
     memset(&learner->contexts, 0, sizeof learner->contexts);
-    grrl_cases_begin_trial(&learner->cases);
+    grrl_cases_begin_trial(&learner->cases, &learner->config.policy.cases);
     memset(&learner->last_choice, 0, sizeof learner->last_choice);
     learner->pushes = 0;
     learner->most_links = 0;

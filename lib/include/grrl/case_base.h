@@ -7,10 +7,16 @@
  * Nadaraya, Theory Probab. Appl. 9, 1964; instance-based: Aha, Kibler & Albert, Machine Learning 6,
  * 1991), and over a prior.
  *
- * Rewards of the running trial count more, and the more the estimates were refuted in it, the less
- * older rewards count: an object of another kind is noticed, and little is carried over to it. When
- * doubt did not help either, it is the object that is hard: older rewards count again. The memory
- * is the caller's and fixed; when it is full, the case not met for the longest time makes room.
+ * The object of a trial may be of another kind than those before, and nobody says so. Rewards of
+ * the running trial are therefore kept apart: what a push finds is compared with what all rewards
+ * let expect and with what those of this trial alone do (a Bayes factor of "as known" against
+ * "another"), and older rewards count as much as it is likely that the object is as known. The next
+ * trial begins with both joined; where the last one ended in doubt, in the measure of the doubt,
+ * older rewards then count less for good, and those of that trial more. Old cases keep one reward,
+ * so that they still speak where nothing else does.
+ *
+ * The memory is the caller's and fixed; when it is full, the case not met for the longest time
+ * makes room.
  *
  * Order of calls: grrl_cases_init; grrl_cases_begin_trial for each trial; then grrl_cases_estimate
  * as often as wanted and grrl_cases_learn once for each push.
@@ -25,13 +31,11 @@
 struct grrl_case_config {
     float prior;        /* reward expected of what was never met; 0.5 */
     float prior_weight; /* in rewards met, > 0; 1 */
-    float mismatch;     /* weight of a case for each part that differs, [0, 1]; 0.1 */
+    float mismatch;     /* weight of a case for each part that differs, [0, 1]; 0.2 */
     float bound;        /* upper bound = estimate + bound / sqrt(weight), >= 0; 0.4 */
-    float doubt;        /* older rewards count exp(-doubt (refuted - patience)) times, >= 0; 1 */
-    float patience;     /* disappointment, in rewards, that is chance; >= 0; 1 */
-    float give_up;      /* disappointment after which doubt begins anew from none; > 0; 7 */
+    float confidence;   /* log odds, at first and at most, that the object is as known, >= 0; 0.5 */
     float present;      /* further times that a reward of the running trial counts, >= 0; 3 */
-    uint8_t memory;     /* rewards that a case remembers, >= 1; 5 */
+    uint8_t memory;     /* rewards that a case remembers, old or new, >= 1; 5 */
     uint16_t parts;     /* bit i: part i of a context counts; all */
 };
 
@@ -39,10 +43,10 @@ struct grrl_case_config {
 
 struct grrl_case {
     struct grrl_context context;
-    uint8_t n;        /* rewards met, up to the memory */
-    uint8_t n_now;    /* in this trial, up to 255 */
-    float value;      /* mean of the rewards, of the latest `memory` by decay */
-    float value_now;  /* mean of those of this trial */
+    uint8_t n;        /* rewards of earlier trials, up to the memory */
+    uint8_t n_new;    /* those of this trial, likewise */
+    float value;      /* mean of the former, of the latest `memory` by decay */
+    float value_new;  /* of the latter */
     uint32_t used_at; /* clock */
 };
 
@@ -52,8 +56,7 @@ struct grrl_case_base {
     uint32_t capacity;
     uint32_t high_water; /* most cases at a time */
     uint32_t evictions;
-    float refuted; /* rewards expected and not met in this trial, less those met unexpected; from 0
-                      to give_up */
+    float log_odds; /* that the object is as known: -4 to confidence; 0 before any is */
     /* private */
     uint32_t clock;
     struct grrl_case *cases;
@@ -85,8 +88,9 @@ void grrl_cases_init(struct grrl_case_base *base, struct grrl_case *cases, uint3
 /* Forgets everything; the memory stays. */
 void grrl_cases_clear(struct grrl_case_base *base);
 
-/* What is met from now on belongs to another trial. */
-void grrl_cases_begin_trial(struct grrl_case_base *base);
+/* What is met from now on belongs to another trial. A second call without a reward between changes
+ * nothing. */
+void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config);
 
 /* Cost: linear in cases, some 40 instructions each. */
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
@@ -101,8 +105,9 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
 
 /*
  * The cases as bytes, as in experience.h. A header: magic "GRRLcas" and zero, version (2 bytes),
- * parts of a context (1), zero (1), cases (4), clock (4). A case: its context, n (1), used at (4),
- * value (4). A CRC-32 (4) follows each and runs on. GRRL_ERR_IO.
+ * parts of a context (1), zero (1), cases (4), clock (4). Then log odds (4). A case: its context, n
+ * (1), n_new (1), used at (4), value (4), value_new (4). A CRC-32 (4) follows each of these and
+ * runs on. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
                                                const struct grrl_experience_io *io);
