@@ -130,14 +130,14 @@ static void the_highest_upper_bound_wins(void **state)
         know(i, 0.0f, 0.0f, 100);
     }
     know(4, 1.0f, 0.0f, 100);
-    know(7, 0.9f, 0.0f, 1); /* 0.9 + 0.5 beats 1 + 0.5 * 0.1 / 10 */
+    know(7, 0.9f, 0.0f, 1); /* 0.9 + 0.25 beats 1 + 0.25 * 0.1 / 10 */
     struct grrl_choice choice;
     assert_int_equal(choose(&choice), 7);
     assert_int_equal(choice.reason, GRRL_CHOICE_EXPLOIT);
     assert_int_equal(choice.from.experience, 7);
     assert_int_equal(choice.from.distance, 3);
-    assert_true(choice.value == 0.9f && fabsf(choice.upper - 1.4f) < 1e-6f &&
-                fabsf(choice.lower - 0.4f) < 1e-6f && choice.phi == 1.0f);
+    assert_true(choice.value == 0.9f && fabsf(choice.upper - 1.15f) < 1e-6f &&
+                fabsf(choice.lower - 0.65f) < 1e-6f && choice.phi == 1.0f);
     f.config.z = 0.0f;
     assert_int_equal(choose(&choice), 4);
     for (unsigned i = 0; i < ACTIONS; ++i) {

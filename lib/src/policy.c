@@ -6,9 +6,9 @@ void grrl_policy_config_default(struct grrl_policy_config *config)
 {
     *config = (struct grrl_policy_config){.kind = GRRL_POLICY_LEARN,
                                           .alpha = 0.3f,
-                                          .gamma = 0.3f,
+                                          .gamma = 0.1f,
                                           .beta = 2.0f,
-                                          .z = 0.5f,
+                                          .z = 0.25f,
                                           .prior_sd = 1.0f,
                                           .trial_reward = 1.0f,
                                           .recall = {.deepest = GRRL_RECALL_SUBSTRUCTURE,

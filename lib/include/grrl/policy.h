@@ -23,9 +23,9 @@ struct grrl_policy_config {
     enum grrl_policy_kind kind;    /* GRRL_POLICY_LEARN */
     struct grrl_case_config cases; /* of GRRL_POLICY_LEARN; what follows is the paper's */
     float alpha;                   /* learning rate, (0, 1]; 0.3 */
-    float gamma;                   /* discount, [0, 1); 0.3 */
+    float gamma;                   /* discount, [0, 1); 0.1 */
     float beta;                    /* exploration, >= 0; the paper's 2 */
-    float z;                       /* Interval Estimation: bound = value + z sd / sqrt(n); 0.5 */
+    float z;                       /* Interval Estimation: bound = value + z sd / sqrt(n); 0.25 */
     float prior_sd;                /* sd assumed for one target, weighs as one sample; 1 */
     struct grrl_recall_config recall;
     float trial_reward; /* with any policy: what the end of a trial adds to the reward, >= 0; 1 */
