@@ -150,9 +150,10 @@ static void on_event(void *context, const struct grrl_agent_event *event)
         run->pushes += event->pushes;
     }
     if (!run->quiet)
-        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u experiences\n", event->trial_id,
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u %s\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage_of(&agent.learner).n);
+                     (unsigned)grrl_learner_usage_of(&agent.learner).n,
+                     run->policy == GRRL_POLICY_LEARN ? "cases" : "experiences");
     (void)fflush(stdout);
 }
 
