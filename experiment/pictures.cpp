@@ -141,7 +141,8 @@ std::string curves_script(const Plan &plan, const Figure &figure)
            " noenhanced tc rgb '#222222'\n"
            "set xlabel 'trial' tc rgb '#222222'\n"
            "set ylabel 'pushes until the structure is known' tc rgb '#222222'\n"
-           "set key top right reverse Left samplen 2 spacing 1.3 tc rgb '#222222' noenhanced\n"
+           "set key outside bottom center horizontal reverse Left samplen 2 tc rgb '#222222' "
+           "noenhanced\n"
            "set yrange [0:*]\n"
            "set style fill transparent solid 0.18 noborder\n" +
            plot_command(plan, figure, figure.name + ".tsv") +
