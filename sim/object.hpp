@@ -62,9 +62,9 @@ struct ObjectSpec {
 /*
  * The defaults of links and joints. A joint moves only if the table holds the part beyond it more
  * firmly than the joint does: one link is held by 0.4 * 0.13 kg * g = 0.5 N, or 3.3 N cm about its
- * end. With these frictions random pushes move every joint of RPRPRPR within about 11 pushes; with
- * 6 N cm and 2 N the joints near the ends hardly ever move. One push at a loop must move at least
- * four joints at once, so that those are looser.
+ * end. With these frictions random pushes find out RPRPRPR in about 20 pushes, as in the paper;
+ * with 6 N cm and 2 N the joints near the ends hardly ever move. One push at a loop must move at
+ * least four joints at once, so that those are looser.
  */
 constexpr double small_half_length_m = 0.045;
 constexpr double large_half_length_m = 0.085;
@@ -73,7 +73,7 @@ constexpr double revolute_initial_rad = radians(20.0);
 constexpr double revolute_friction_n_m = 0.03;
 constexpr double prismatic_limit_m = 0.03;
 constexpr double prismatic_initial_m = 0.015;
-constexpr double prismatic_friction_n = 0.8;
+constexpr double prismatic_friction_n = 0.95;
 constexpr double loop_friction_share = 1.0 / 3.0;
 
 /* A link without a name, of a size, with the features that suit its length. */
