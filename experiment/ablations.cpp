@@ -70,13 +70,15 @@ void add_learn(std::vector<Policy> &table)
     static const char *const parts[GRRL_CONTEXT_PARTS] = {
         "direction", "length",    "tried",        "neighbours", "neighbour-length",
         "revolute",  "prismatic", "others-tried", "longer"};
-    table.push_back(changed("learn", "exact", "nothing but cases of the very same context count",
-                            [](grrl_learner_config &c) { c.policy.cases.mismatch = 0.0f; }));
-    table.push_back(changed("learn", "no-bound", "the best estimate, not the best bound",
-                            [](grrl_learner_config &c) { c.policy.cases.bound = 0.0f; }));
-    table.push_back(
-        changed("learn", "no-doubt", "older rewards count whatever the trial brings",
-                [](grrl_learner_config &c) { c.policy.cases.confidence = GRRL_MAX_REWARD; }));
+    table.push_back(changed(
+        "learn", "exact", "nothing but cases of the very same context count",
+        [](grrl_learner_config &c) { c.policy.cases.mismatch = 0.0f; }));
+    table.push_back(changed(
+        "learn", "no-bound", "the best estimate, not the best bound",
+        [](grrl_learner_config &c) { c.policy.cases.bound = 0.0f; }));
+    table.push_back(changed(
+        "learn", "no-doubt", "older rewards count whatever the trial brings",
+        [](grrl_learner_config &c) { c.policy.cases.confidence = GRRL_MAX_REWARD; }));
     table.push_back(changed("learn", "no-present", "newer rewards count no more than older ones",
                             [](grrl_learner_config &c) { c.policy.cases.present = 0.0f; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)

@@ -30,7 +30,8 @@ public:
     Signals()
     {
         for (int signal : {SIGINT, SIGTERM, SIGHUP})
-            (void)std::signal(signal, [](int) { stop = 1; });
+            (void)std::signal(
+                signal, [](int) { stop = 1; });
     }
     ~Signals() { reset(); }
     Signals(const Signals &) = delete;

@@ -14,7 +14,7 @@ namespace
 std::string escaped(const std::string &text)
 {
     std::string result;
-    for (char c : text) {
+    for (char c : text)
         if (c == '<')
             result += "&lt;";
         else if (c == '>')
@@ -25,7 +25,6 @@ std::string escaped(const std::string &text)
             result += "&quot;";
         else
             result += c;
-    }
     return result;
 }
 

@@ -6,9 +6,8 @@
 static uint64_t hash_on(uint64_t hash, const void *bytes, size_t n)
 {
     const uint8_t *byte = bytes;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++)
         hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
-    }
     return hash;
 }
 
@@ -19,9 +18,8 @@ void onboard_controller_init(struct onboard_controller *controller, uint32_t (*c
     controller->hashes = (struct onboard_hashes){HASH_START, HASH_START, HASH_START};
     controller->store_hash = HASH_START;
     controller->store_bytes = 0;
-    for (int i = 0; i < ONBOARD_STEPS; i++) {
+    for (int i = 0; i < ONBOARD_STEPS; i++)
         controller->cost[i] = (struct onboard_cost){0};
-    }
 }
 
 static uint32_t now(const struct onboard_controller *controller)
@@ -35,9 +33,8 @@ static void count(struct onboard_controller *controller, enum onboard_step step,
     uint32_t spent = now(controller) - since;
     cost->sum += spent;
     cost->n++;
-    if (spent > cost->most) {
+    if (spent > cost->most)
         cost->most = spent;
-    }
 }
 
 static void begin_answer(struct onboard_controller *controller, enum onboard_packet_type type,
@@ -64,15 +61,13 @@ static enum grrl_status open_run(struct onboard_controller *controller,
     grrl_learner_config_default(&config);
     config.seed = onboard_get(packet, 8);
     uint64_t policy = onboard_get(packet, 1);
-    if (!onboard_packet_used_up(packet) || policy > GRRL_POLICY_RANDOM) {
+    if (!onboard_packet_used_up(packet) || policy > GRRL_POLICY_RANDOM)
         return GRRL_ERR_FORMAT;
-    }
     config.policy.kind = (enum grrl_policy_kind)policy;
     if (links != GRRL_MAX_LINKS || features != GRRL_MAX_FEATURES ||
         keyframes != GRRL_MAX_KEYFRAMES || states != ONBOARD_STATES ||
-        experiences != ONBOARD_EXPERIENCES) {
+        experiences != ONBOARD_EXPERIENCES)
         return GRRL_ERR_VERSION;
-    }
     onboard_controller_init(controller, controller->count);
     const struct grrl_learner_memory memory = {
         .cases = controller->cases,
@@ -93,9 +88,8 @@ static enum grrl_status take_frame(struct onboard_controller *controller,
 {
     struct grrl_frame frame;
     bool pushing;
-    if (!onboard_get_frame(packet, &controller->points, &frame, &pushing)) {
+    if (!onboard_get_frame(packet, &controller->points, &frame, &pushing))
         return GRRL_ERR_FORMAT;
-    }
     uint32_t start = now(controller);
     grrl_learner_observe(&controller->learner, &frame, pushing);
     count(controller, ONBOARD_STEP_FRAME, start);
@@ -124,9 +118,8 @@ static void perceive(struct onboard_controller *controller)
     if (status == GRRL_OK) {
         onboard_put_model(&controller->answer,
                           grrl_perception_model(&controller->learner.perception));
-        if (print_term(controller, &length) != GRRL_OK) {
+        if (print_term(controller, &length) != GRRL_OK)
             length = 0; /* no body yet, or a structure too large for the text */
-        }
     }
     add_answer(controller, &controller->hashes.models);
     controller->hashes.models = hash_on(controller->hashes.models, controller->text, length);
@@ -139,9 +132,8 @@ static void choose(struct onboard_controller *controller)
     enum grrl_status status = grrl_learner_choose(&controller->learner, &decision);
     count(controller, ONBOARD_STEP_CHOOSE, start);
     begin_answer(controller, ONBOARD_DECISION, status);
-    if (status == GRRL_OK) {
+    if (status == GRRL_OK)
         onboard_put_decision(&controller->answer, &decision);
-    }
     add_answer(controller, &controller->hashes.decisions);
 }
 
@@ -197,20 +189,16 @@ static enum grrl_status take(struct onboard_controller *controller, struct onboa
 {
     packet->at = 0;
     packet->bad = false;
-    if (packet->type == ONBOARD_OPEN) {
+    if (packet->type == ONBOARD_OPEN)
         return open_run(controller, packet);
-    }
-    if (!controller->open) {
+    if (!controller->open)
         return GRRL_ERR_ORDER;
-    }
     static const uint8_t lengths[ONBOARD_EXPECT + 1] = {
         [ONBOARD_TRIAL] = 4, [ONBOARD_LEARN] = 1, [ONBOARD_EXPECT] = 24};
-    if (packet->type == ONBOARD_FRAME) {
+    if (packet->type == ONBOARD_FRAME)
         return take_frame(controller, packet);
-    }
-    if (packet->type == 0 || packet->type > ONBOARD_EXPECT || packet->n != lengths[packet->type]) {
+    if (packet->type == 0 || packet->type > ONBOARD_EXPECT || packet->n != lengths[packet->type])
         return GRRL_ERR_FORMAT;
-    }
     switch (packet->type) {
     case ONBOARD_TRIAL:
         grrl_learner_begin_trial(&controller->learner, (uint32_t)onboard_get(packet, 4));
@@ -238,8 +226,7 @@ enum grrl_status onboard_controller_take(struct onboard_controller *controller,
                                          struct onboard_packet *packet)
 {
     enum grrl_status status = take(controller, packet);
-    if (status != GRRL_OK) {
+    if (status != GRRL_OK)
         begin_answer(controller, ONBOARD_REFUSED, status);
-    }
     return status;
 }

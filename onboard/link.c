@@ -65,13 +65,11 @@ size_t onboard_link_encode(uint8_t sequence, uint8_t type, const uint8_t *bytes,
     send(&sender, type);
     send(&sender, (uint8_t)n);
     send(&sender, (uint8_t)(n >> 8));
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         send(&sender, bytes[i]);
-    }
     uint32_t crc = ~sender.crc;
-    for (int i = 0; i < ONBOARD_LINK_CRC; i++) {
+    for (int i = 0; i < ONBOARD_LINK_CRC; i++)
         send(&sender, (uint8_t)(crc >> (8 * i)));
-    }
     end_block(&sender);
     line[sender.n++] = 0;
     return sender.n;
@@ -82,13 +80,12 @@ static void take_content(struct onboard_receiver *receiver, uint8_t byte)
 {
     uint32_t at = receiver->n++;
     receiver->crc = crc_on(receiver->crc, byte);
-    if (at < ONBOARD_LINK_HEAD) {
+    if (at < ONBOARD_LINK_HEAD)
         receiver->head[at] = byte;
-    } else if (at - ONBOARD_LINK_HEAD < ONBOARD_MAX_BYTES) {
+    else if (at - ONBOARD_LINK_HEAD < ONBOARD_MAX_BYTES)
         receiver->packet->bytes[at - ONBOARD_LINK_HEAD] = byte;
-    } else if (at >= ONBOARD_LINK_CONTENT) {
+    else if (at >= ONBOARD_LINK_CONTENT)
         receiver->bad = true;
-    }
 }
 
 static void begin_frame(struct onboard_receiver *receiver)
@@ -114,9 +111,8 @@ static enum onboard_link_event end_frame(struct onboard_receiver *receiver)
     bool good = !receiver->bad && receiver->left == 0 && receiver->crc == CRC_RESIDUE &&
                 receiver->n == ONBOARD_LINK_HEAD + length + ONBOARD_LINK_CRC;
     begin_frame(receiver);
-    if (!good) {
+    if (!good)
         return empty ? ONBOARD_LINK_NOTHING : ONBOARD_LINK_DAMAGED;
-    }
     receiver->sequence = receiver->head[0];
     onboard_packet_begin(receiver->packet, receiver->head[1]);
     receiver->packet->n = (uint16_t)length;
@@ -125,20 +121,17 @@ static enum onboard_link_event end_frame(struct onboard_receiver *receiver)
 
 enum onboard_link_event onboard_link_take(struct onboard_receiver *receiver, uint8_t byte)
 {
-    if (byte == 0) {
+    if (byte == 0)
         return end_frame(receiver);
-    }
-    if (receiver->bad) {
+    if (receiver->bad)
         return ONBOARD_LINK_NOTHING;
-    }
     if (receiver->left > 0) {
         receiver->left--;
         take_content(receiver, byte);
         return ONBOARD_LINK_NOTHING;
     }
-    if (receiver->owed) {
+    if (receiver->owed)
         take_content(receiver, 0);
-    }
     receiver->left = (uint8_t)(byte - 1);
     receiver->owed = byte != UINT8_MAX;
     return ONBOARD_LINK_NOTHING;

@@ -18,9 +18,8 @@ void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes)
         packet->bad = true;
         return;
     }
-    for (unsigned i = 0; i < bytes; i++) {
+    for (unsigned i = 0; i < bytes; i++)
         packet->bytes[packet->n++] = (uint8_t)(value >> (8 * i));
-    }
 }
 
 void onboard_put_float(struct onboard_packet *packet, float value)
@@ -37,9 +36,8 @@ uint64_t onboard_get(struct onboard_packet *packet, unsigned bytes)
         return 0;
     }
     uint64_t value = 0;
-    for (unsigned i = 0; i < bytes; i++) {
+    for (unsigned i = 0; i < bytes; i++)
         value |= (uint64_t)packet->bytes[packet->at++] << (8 * i);
-    }
     return value;
 }
 
@@ -86,9 +84,8 @@ bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *poi
     *frame = (struct grrl_frame){.id = points->id, .x_m = points->x_m, .y_m = points->y_m};
     *pushing = onboard_get(packet, 1) != 0;
     uint32_t n = (uint32_t)onboard_get(packet, 2);
-    if (n > GRRL_MAX_FEATURES || packet->n != 3 + 12 * n) {
+    if (n > GRRL_MAX_FEATURES || packet->n != 3 + 12 * n)
         return false;
-    }
     for (uint32_t i = 0; i < n; i++) {
         uint32_t id = (uint32_t)onboard_get(packet, 4);
         memcpy(&points->id[i], &id, sizeof id);
@@ -115,9 +112,8 @@ static void put_joint(struct onboard_packet *packet, const struct grrl_joint *jo
     onboard_put_float(packet, joint->p_prismatic);
     onboard_put_float(packet, joint->p_disconnected);
     put_vec2(packet, joint->point_m);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         onboard_put_float(packet, joint->point_cov_m2[i]);
-    }
     put_vec2(packet, joint->axis);
     onboard_put_float(packet, joint->axis_sd_rad);
     onboard_put_float(packet, joint->lower);
@@ -139,9 +135,8 @@ void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *m
         onboard_put_float(packet, body->width_m);
         onboard_put(packet, body->properties, 8);
     }
-    for (int i = 0; i < model->n_joints; i++) {
+    for (int i = 0; i < model->n_joints; i++)
         put_joint(packet, &model->joint[i]);
-    }
     for (int i = 0; i < model->n_features; i++) {
         onboard_put(packet, (uint32_t)model->feature_id[i], 4);
         put_vec2(packet, model->feature_m[i]);
@@ -219,9 +214,8 @@ static void get_joint(struct onboard_packet *packet, struct grrl_joint *joint)
     joint->p_prismatic = onboard_get_float(packet);
     joint->p_disconnected = onboard_get_float(packet);
     joint->point_m = get_vec2(packet);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         joint->point_cov_m2[i] = onboard_get_float(packet);
-    }
     joint->axis = get_vec2(packet);
     joint->axis_sd_rad = onboard_get_float(packet);
     joint->lower = onboard_get_float(packet);
@@ -234,13 +228,11 @@ bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model)
     model->n_joints = get_byte(packet);
     model->n_features = (uint16_t)onboard_get(packet, 2);
     if (model->n_bodies > GRRL_MAX_LINKS || model->n_joints > GRRL_MAX_JOINTS ||
-        model->n_features > GRRL_MAX_FEATURES) {
+        model->n_features > GRRL_MAX_FEATURES)
         return false;
-    }
     bool fine = true;
-    for (int i = 0; i < model->n_bodies; i++) {
+    for (int i = 0; i < model->n_bodies; i++)
         get_body(packet, &model->body[i]);
-    }
     for (int i = 0; i < model->n_joints; i++) {
         struct grrl_joint *joint = &model->joint[i];
         get_joint(packet, joint);

@@ -4,13 +4,11 @@ static enum grrl_status next_packet(const struct onboard_source *source,
                                     struct onboard_packet *packet)
 {
     uint8_t head[3];
-    if (source->read(source->context, head, sizeof head) != 0) {
+    if (source->read(source->context, head, sizeof head) != 0)
         return GRRL_ERR_IO;
-    }
     unsigned n = head[1] | (unsigned)head[2] << 8;
-    if (n > ONBOARD_MAX_BYTES) {
+    if (n > ONBOARD_MAX_BYTES)
         return GRRL_ERR_FORMAT;
-    }
     packet->type = head[0];
     packet->n = (uint16_t)n;
     return source->read(source->context, packet->bytes, n) == 0 ? GRRL_OK : GRRL_ERR_IO;

@@ -19,9 +19,8 @@ static size_t complain(struct onboard_server *server)
 {
     uint8_t count[4];
     server->damaged++;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         count[i] = (uint8_t)(server->damaged >> (8 * i));
-    }
     return onboard_link_encode(0, ONBOARD_BAD, count, sizeof count, server->line);
 }
 

@@ -210,12 +210,11 @@ void grrl_report_svg(FILE *file, const struct grrl_report *report)
                   "fill=\"#222\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
                   (int)WIDTH, height, (int)WIDTH, height);
     draw_features(&page, model);
-    for (unsigned i = 0; i < model->n_joints; i++) {
+    for (unsigned i = 0; i < model->n_joints; i++)
         if (model->joint[i].type == GRRL_REVOLUTE)
             draw_pivot(&page, &model->joint[i]);
         else
             draw_axis(&page, model, &model->joint[i]);
-    }
     draw_names(&page, model);
     write_legend(&page, report);
     (void)fputs("</svg>\n", file);

@@ -248,7 +248,8 @@ int main(int argc, char **argv)
         (void)std::fprintf(stderr, "grrl-sim: --object: %s\n", object.error.c_str());
         return 2;
     }
-    (void)std::signal(SIGINT, [](int) { stop = 1; });
+    (void)std::signal(
+        SIGINT, [](int) { stop = 1; });
     (void)std::signal(SIGTERM, [](int) { stop = 1; });
     lcm_t *lcm = open_lcm(options.lcm_url);
     if (lcm == nullptr)

@@ -50,28 +50,26 @@ void grrl_perception_observe(struct grrl_perception *perception, const struct gr
     (void)perception;
     (void)frame;
     (void)pushing;
-    ++world.frames;
+    world.frames++;
 }
 
 static uint8_t body_with(uint8_t link)
 {
     uint8_t body = 0;
-    while (link < world.first[body] || link > world.last[body]) {
-        ++body;
-    }
+    while (link < world.first[body] || link > world.last[body])
+        body++;
     return body;
 }
 
 enum grrl_status grrl_perception_update(struct grrl_perception *perception)
 {
     (void)perception;
-    if (world.nothing_seen) {
+    if (world.nothing_seen)
         return GRRL_ERR_NONE;
-    }
     struct grrl_model *model = &world.model;
     memset(model, 0, sizeof *model);
     model->n_bodies = world.n_bodies;
-    for (uint8_t i = 0; i < world.n_bodies; ++i) {
+    for (uint8_t i = 0; i < world.n_bodies; i++) {
         bool single = world.first[i] == world.last[i];
         float middle = 0.05f * (float)(world.first[i] + world.last[i]);
         model->body[i] =
@@ -85,7 +83,7 @@ enum grrl_status grrl_perception_update(struct grrl_perception *perception)
         model->feature_body[i] = i;
     }
     model->n_features = model->n_bodies;
-    for (uint8_t j = 0; j < world.n_revealed; ++j) {
+    for (uint8_t j = 0; j < world.n_revealed; j++) {
         uint8_t link = world.revealed[j];
         uint8_t a = body_with(link);
         uint8_t b = body_with((uint8_t)(link + 1));
@@ -110,20 +108,18 @@ void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
                       struct grrl_name *names, struct grrl_edge *edges)
 {
     grrl_graph_clear(graph);
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
         assert_int_equal(grrl_graph_add_link(graph, model->body[i].properties, NULL), GRRL_OK);
-        if (names != NULL) {
+        if (names != NULL)
             names[i] = (struct grrl_name){GRRL_NAME_FEATURES, model->body[i].number};
-        }
     }
-    for (uint8_t j = 0; j < model->n_joints; ++j) {
+    for (uint8_t j = 0; j < model->n_joints; j++) {
         const struct grrl_joint *joint = &model->joint[j];
         assert_int_equal(
             grrl_graph_add_joint(graph, joint->a, joint->b, (enum grrl_joint_type)joint->type),
             GRRL_OK);
-        if (edges != NULL) {
+        if (edges != NULL)
             edges[j] = (struct grrl_edge){joint->a, joint->b, joint->type};
-        }
     }
 }
 
@@ -142,16 +138,15 @@ static void world_reveal(uint8_t body)
         world.revealed[world.n_revealed++] = joint;
         world.first[world.n_bodies] = world.last[body];
         world.last[world.n_bodies] = world.last[body];
-        ++world.n_bodies;
+        world.n_bodies++;
         world.last[body] = joint;
     }
 }
 
 static bool world_push(const struct grrl_choice *choice)
 {
-    if (choice->direction == 2) {
+    if (choice->direction == 2)
         world_reveal(choice->link);
-    }
     return world.n_revealed == strlen(world.joints);
 }
 

@@ -38,9 +38,8 @@ struct kinematic_world {
 static inline float world_normal(struct kinematic_world *w)
 {
     float sum = -6.0f;
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         sum += grrl_random_uniform(&w->random);
-    }
     return sum;
 }
 
@@ -86,16 +85,14 @@ static inline void world_add_chain(struct kinematic_world *w, const char *joints
 {
     int last = world_add_link(w, -1, 0);
     w->root[last].p = (struct grrl_vec2){x, y};
-    for (const char *j = joints; *j != '\0'; j++) {
+    for (const char *j = joints; *j != '\0'; j++)
         last = world_add_link(w, last, *j);
-    }
 }
 
 static inline void world_add_background(struct kinematic_world *w, int n)
 {
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         (void)world_add_point(w, -1, world_uniform(w, -1.0f, 1.0f), world_uniform(w, -0.8f, 0.8f));
-    }
 }
 
 /* Ids without a hint of the body. */
@@ -135,9 +132,8 @@ static inline struct grrl_frame world_frame(struct kinematic_world *w)
     world_poses(w);
     uint32_t n = 0;
     for (int i = 0; i < w->n_points; i++) {
-        if (grrl_random_uniform(&w->random) < w->missing) {
+        if (grrl_random_uniform(&w->random) < w->missing)
             continue;
-        }
         struct grrl_vec2 at =
             w->body[i] < 0 ? w->local[i] : grrl_transform(w->pose[w->body[i]], w->local[i]);
         w->seen[n] = w->id[i];
@@ -165,9 +161,8 @@ static inline void world_move(struct kinematic_world *w, struct grrl_perception 
                               struct grrl_vec2 shift, float turn)
 {
     for (int f = 0; f < 120; f++) {
-        for (int i = 0; i < w->n_links; i++) {
+        for (int i = 0; i < w->n_links; i++)
             w->q[i] += dq[i] / 120;
-        }
         w->root[0].p = grrl_vec2_add(w->root[0].p, grrl_vec2_scale(shift, 1.0f / 120));
         w->root_angle[0] += turn / 120;
         struct grrl_frame frame = world_frame(w);

@@ -24,9 +24,8 @@ static inline int memory_file_fails(struct memory_file *file)
 static inline int memory_file_write(void *context, const void *bytes, size_t size)
 {
     struct memory_file *file = (struct memory_file *)context;
-    if (memory_file_fails(file) || size > MEMORY_FILE_BYTES - file->size) {
+    if (memory_file_fails(file) || size > MEMORY_FILE_BYTES - file->size)
         return -1;
-    }
     memcpy(file->bytes + file->size, bytes, size);
     file->size += size;
     return 0;
@@ -35,9 +34,8 @@ static inline int memory_file_write(void *context, const void *bytes, size_t siz
 static inline int memory_file_read(void *context, void *bytes, size_t size)
 {
     struct memory_file *file = (struct memory_file *)context;
-    if (memory_file_fails(file) || size > file->size - file->at) {
+    if (memory_file_fails(file) || size > file->size - file->at)
         return -1;
-    }
     memcpy(bytes, file->bytes + file->at, size);
     file->at += size;
     return 0;

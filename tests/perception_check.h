@@ -26,11 +26,9 @@ static inline void start(uint64_t seed, const char *chain)
 /* The true link of a tracked feature, -1 for the background. */
 static inline int true_link(int32_t id)
 {
-    for (int i = 0; i < world.n_points; i++) {
-        if (world.id[i] == id) {
+    for (int i = 0; i < world.n_points; i++)
+        if (world.id[i] == id)
             return world.body[i];
-        }
-    }
     return -2;
 }
 
@@ -41,13 +39,11 @@ static inline int link_of_body(const struct grrl_model *model, int body)
     int best = 0;
     for (int i = 0; i < model->n_features; i++) {
         int link = true_link(model->feature_id[i]);
-        if (model->feature_body[i] == body && link >= 0) {
+        if (model->feature_body[i] == body && link >= 0)
             votes[link]++;
-        }
     }
-    for (int i = 0; i < world.n_links; i++) {
+    for (int i = 0; i < world.n_links; i++)
         best = votes[i] > votes[best] ? i : best;
-    }
     return best;
 }
 
@@ -56,14 +52,11 @@ static inline int body_of_link(const struct grrl_model *model, int link)
 {
     int votes[GRRL_MAX_LINKS] = {0};
     int best = 0;
-    for (int i = 0; i < model->n_features; i++) {
-        if (true_link(model->feature_id[i]) == link && model->feature_body[i] < model->n_bodies) {
+    for (int i = 0; i < model->n_features; i++)
+        if (true_link(model->feature_id[i]) == link && model->feature_body[i] < model->n_bodies)
             votes[model->feature_body[i]]++;
-        }
-    }
-    for (int i = 0; i < model->n_bodies; i++) {
+    for (int i = 0; i < model->n_bodies; i++)
         best = votes[i] > votes[best] ? i : best;
-    }
     return best;
 }
 
@@ -71,11 +64,9 @@ static inline int body_of_link(const struct grrl_model *model, int link)
 static inline int misplaced(const struct grrl_model *model)
 {
     int n = 0;
-    for (int i = 0; i < model->n_features; i++) {
-        if (model->feature_body[i] < model->n_bodies) {
+    for (int i = 0; i < model->n_features; i++)
+        if (model->feature_body[i] < model->n_bodies)
             n += link_of_body(model, model->feature_body[i]) != true_link(model->feature_id[i]);
-        }
-    }
     return n;
 }
 
@@ -87,9 +78,8 @@ static inline int torn_off(const struct grrl_model *model)
     int n = 0;
     for (int i = 0; i < model->n_features; i++) {
         int link = true_link(model->feature_id[i]);
-        if (link >= 0 && model->feature_body[i] < model->n_bodies) {
+        if (link >= 0 && model->feature_body[i] < model->n_bodies)
             count[link][model->feature_body[i]]++;
-        }
     }
     for (int link = 0; link < world.n_links; link++) {
         int most = 0;
@@ -105,18 +95,16 @@ static inline int torn_off(const struct grrl_model *model)
 /* Every body another link, every joint between neighbours in the chain and of the right type. */
 static inline bool is_the_chain(const struct grrl_model *model)
 {
-    if (model->n_bodies != world.n_links || model->n_joints != world.n_links - 1) {
+    if (model->n_bodies != world.n_links || model->n_joints != world.n_links - 1)
         return false;
-    }
     bool found[WORLD_LINKS] = {false};
     for (int i = 0; i < model->n_joints; i++) {
         int a = link_of_body(model, model->joint[i].a);
         int b = link_of_body(model, model->joint[i].b);
         int child = a > b ? a : b;
         char type = model->joint[i].type == GRRL_REVOLUTE ? 'R' : 'P';
-        if ((a > b ? a - b : b - a) != 1 || world.joint[child] != type || found[child]) {
+        if ((a > b ? a - b : b - a) != 1 || world.joint[child] != type || found[child])
             return false;
-        }
         found[child] = true;
     }
     return true;

@@ -16,7 +16,7 @@ static inline int abs_difference(int a, int b)
 /* A random order of 0 .. n - 1. */
 static inline void shuffle(struct grrl_random *random, uint8_t n, uint8_t *order)
 {
-    for (uint8_t i = 0; i < n; ++i) {
+    for (uint8_t i = 0; i < n; i++) {
         uint8_t j = (uint8_t)grrl_random_below(random, i + 1u);
         order[i] = order[j];
         order[j] = i;
@@ -29,7 +29,7 @@ static inline void check_store(const struct grrl_experience_store *store)
     assert_true(store->n_experiences <= store->experiences_capacity);
     assert_true(store->high_water >= store->n_experiences);
     unsigned listed = 0;
-    for (uint32_t s = 0; s < store->n_states; ++s) {
+    for (uint32_t s = 0; s < store->n_states; s++) {
         const struct grrl_experience_state *state = &store->states[s];
         unsigned count = 0;
         for (uint32_t i = state->first; i != GRRL_NO_EXPERIENCE; i = store->experiences[i].next) {
@@ -42,7 +42,7 @@ static inline void check_store(const struct grrl_experience_store *store)
         assert_int_equal(state->experiences, count);
         assert_true(count > 0);
         listed += count;
-        for (uint32_t other = 0; other < s; ++other) {
+        for (uint32_t other = 0; other < s; other++) {
             struct grrl_graph graphs[2];
             grrl_experience_graph(state, &graphs[0]);
             grrl_experience_graph(&store->states[other], &graphs[1]);

@@ -42,7 +42,7 @@ static struct grrl_context context(uint8_t a, uint8_t b)
 static struct grrl_context random_context(void)
 {
     struct grrl_context context;
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++) {
         uint32_t values = grrl_context_most[i] + 1u;
         context.part[i] = (uint8_t)grrl_random_below(&f.random, values < 2 ? values : 2);
     }
@@ -83,16 +83,15 @@ static void an_estimate_is_the_weighted_mean_of_all_rewards(void **state)
     float reward[CAPACITY];
     trust_always();
     f.config.memory = CAPACITY;
-    for (unsigned n = 0; n < CAPACITY; ++n) {
+    for (unsigned n = 0; n < CAPACITY; n++) {
         struct grrl_context asked = random_context();
         double weight = (double)f.config.prior_weight;
         double sum = weight * (double)f.config.prior;
         unsigned fewest = GRRL_CONTEXT_PARTS + 1;
-        for (unsigned i = 0; i < n; ++i) {
+        for (unsigned i = 0; i < n; i++) {
             unsigned differ = 0;
-            for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; ++part) {
+            for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
                 differ += met[i].part[part] != asked.part[part];
-            }
             double alike = pow((double)f.config.mismatch, differ);
             weight += alike;
             sum += alike * (double)reward[i];
@@ -102,9 +101,8 @@ static void an_estimate_is_the_weighted_mean_of_all_rewards(void **state)
         grrl_cases_estimate(&f.base, &f.config, &asked, &estimate);
         assert_true(fabs((double)estimate.value - sum / weight) < 1e-4);
         assert_true(fabs((double)estimate.weight - weight) < 1e-3);
-        if (n > 0) {
+        if (n > 0)
             assert_int_equal(estimate.mismatches, fewest);
-        }
         met[n] = random_context();
         reward[n] = (float)grrl_random_below(&f.random, 4);
         assert_true(grrl_cases_learn(&f.base, &f.config, &met[n], reward[n]) < f.base.n);
@@ -129,14 +127,12 @@ static void the_latest_rewards_count(void **state)
     (void)state;
     struct grrl_context a = context(0, 0);
     trust_always();
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < 50; i++)
         (void)grrl_cases_learn(&f.base, &f.config, &a, 0.0f);
-    }
     grrl_cases_begin_trial(&f.base, &f.config);
     float before = estimate(&a);
-    for (int i = 0; i < 10; ++i) {
+    for (int i = 0; i < 10; i++)
         (void)grrl_cases_learn(&f.base, &f.config, &a, 2.0f);
-    }
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_true(before < 0.1f && estimate(&a) > 1.4f);
     assert_int_equal(f.base.cases[0].n, f.config.memory);
@@ -145,7 +141,7 @@ static void the_latest_rewards_count(void **state)
 /* Of two contexts one finds something in each trial, the other nothing. */
 static void learn_an_object(const struct grrl_context *good, const struct grrl_context *bad)
 {
-    for (int trial = 0; trial < 10; ++trial) {
+    for (int trial = 0; trial < 10; trial++) {
         grrl_cases_begin_trial(&f.base, &f.config);
         (void)grrl_cases_learn(&f.base, &f.config, good, 3.0f);
         (void)grrl_cases_learn(&f.base, &f.config, bad, 0.0f);
@@ -168,9 +164,8 @@ static void refuted_expectations_weaken_older_rewards(void **state)
     float trusted = estimate(&good);
     float hoped = estimate(&other);
     assert_true(trusted > 2.0f && hoped > 1.0f && f.base.log_odds == f.config.confidence);
-    for (int push = 0; push < 2; ++push) {
+    for (int push = 0; push < 2; push++)
         (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
-    }
     assert_true(f.base.log_odds < -1.0f);
     assert_true(estimate(&good) < 0.5f && estimate(&other) < hoped - 0.3f);
     grrl_cases_begin_trial(&f.base, &f.config);
@@ -188,7 +183,7 @@ static void a_failure_without_doubt_weakens_nothing(void **state)
     struct grrl_context bad = context(2, 1);
     learn_an_object(&good, &bad);
     (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
-    for (int push = 0; push < 4; ++push) {
+    for (int push = 0; push < 4; push++) {
         (void)grrl_cases_learn(&f.base, &f.config, &good, 3.0f);
         (void)grrl_cases_learn(&f.base, &f.config, &bad, 0.0f);
     }
@@ -219,7 +214,7 @@ static void nothing_known_can_not_be_doubted(void **state)
 {
     (void)state;
     grrl_cases_begin_trial(&f.base, &f.config);
-    for (int push = 0; push < 50; ++push) {
+    for (int push = 0; push < 50; push++) {
         struct grrl_context any = random_context();
         (void)grrl_cases_learn(&f.base, &f.config, &any, 0.0f);
     }
@@ -234,7 +229,7 @@ static void doubt_has_bounds(void **state)
     f.config.memory = 50;
     learn_an_object(&good, &bad);
     float least = 0.0f;
-    for (int push = 0; push < 200; ++push) {
+    for (int push = 0; push < 200; push++) {
         struct grrl_context any = random_context();
         bool expected = grrl_random_below(&f.random, 2) == 0;
         (void)grrl_cases_learn(&f.base, &f.config, push % 3 == 0 ? &any : &good,
@@ -245,9 +240,8 @@ static void doubt_has_bounds(void **state)
     }
     assert_true(least < -1.0f);
     trust_always();
-    for (int push = 0; push < 100; ++push) {
+    for (int push = 0; push < 100; push++)
         (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
-    }
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_true(f.base.log_odds == f.config.confidence && f.base.cases[0].n_new == 0);
 }
@@ -257,18 +251,16 @@ static void newer_rewards_push_out_older_ones(void **state)
     (void)state;
     struct grrl_context a = context(0, 0);
     trust_always();
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4; i++)
         (void)grrl_cases_learn(&f.base, &f.config, &a, 1.0f);
-    }
     assert_int_equal(f.base.cases[0].n, 0);
     assert_int_equal(f.base.cases[0].n_new, 4);
     grrl_cases_begin_trial(&f.base, &f.config);
     grrl_cases_begin_trial(&f.base, &f.config); /* once more changes nothing */
     assert_int_equal(f.base.cases[0].n, 4);
     assert_int_equal(f.base.cases[0].n_new, 0);
-    for (int i = 0; i < 2; ++i) {
+    for (int i = 0; i < 2; i++)
         (void)grrl_cases_learn(&f.base, &f.config, &a, 6.0f);
-    }
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_int_equal(f.base.cases[0].n, 5); /* three ones and two sixes */
     assert_true(fabsf(f.base.cases[0].value - 3.0f) < 1e-5f);
@@ -320,12 +312,11 @@ static struct memory_file file = {.calls_left = -1};
 
 static void save_some(void)
 {
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 12; i++) {
         struct grrl_context a = random_context();
         (void)grrl_cases_learn(&f.base, &f.config, &a, (float)(i % 3));
-        if (i == 6) {
+        if (i == 6)
             grrl_cases_begin_trial(&f.base, &f.config);
-        }
     }
     file.size = file.at = 0;
     const struct grrl_experience_io io = memory_file_io(&file);
@@ -363,7 +354,7 @@ static void a_damaged_file_is_refused(void **state)
         assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_IO);
         assert_int_equal(f.base.n, 0);
     }
-    for (size_t i = 0; i < whole; ++i) {
+    for (size_t i = 0; i < whole; i++) {
         file.bytes[i] ^= 0x40;
         file.at = 0;
         assert_int_not_equal(grrl_cases_load(&f.base, &io), GRRL_OK);

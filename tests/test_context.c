@@ -21,7 +21,7 @@ static struct grrl_model chain(float turn_cos, float turn_sin, float mirror)
     static const float length_m[] = {0.1f, 0.1f, 0.2f};
     struct grrl_model model;
     memset(&model, 0, sizeof model);
-    for (uint8_t i = 0; i < 3; ++i) {
+    for (uint8_t i = 0; i < 3; i++) {
         struct grrl_body *body = &model.body[i];
         float middle = from_m[i] + 0.5f * length_m[i];
         *body = (struct grrl_body){.number = (uint16_t)(i + 1),
@@ -30,7 +30,7 @@ static struct grrl_model chain(float turn_cos, float turn_sin, float mirror)
                                    .axis = {turn_cos, turn_sin * mirror},
                                    .length_m = length_m[i],
                                    .width_m = 0.02f};
-        for (int end = 0; end < 2; ++end) {
+        for (int end = 0; end < 2; end++) {
             float at = from_m[i] + (float)end * length_m[i];
             model.feature_m[model.n_features] =
                 (struct grrl_vec2){at * turn_cos, at * turn_sin * mirror};
@@ -73,7 +73,7 @@ static void a_context_says_what_is_around_the_link(void **state)
     struct grrl_context contexts[GRRL_DIRECTIONS];
     describe(&model, 1, contexts);
     static const uint8_t slant[GRRL_DIRECTIONS] = {0, 1, 2, 0, 1, 2}; /* 0 45 90 180 225 270 */
-    for (int d = 0; d < GRRL_DIRECTIONS; ++d) {
+    for (int d = 0; d < GRRL_DIRECTIONS; d++) {
         const uint8_t *part = contexts[d].part;
         assert_int_equal(part[GRRL_CONTEXT_DIRECTION], slant[d]);
         assert_int_equal(part[GRRL_CONTEXT_LENGTH], 1);
@@ -88,9 +88,8 @@ static void a_context_says_what_is_around_the_link(void **state)
     assert_int_equal(
         contexts[0].part[GRRL_CONTEXT_NEIGHBOURS] + contexts[3].part[GRRL_CONTEXT_NEIGHBOURS], 3);
     assert_int_equal(contexts[0].part[GRRL_CONTEXT_LONGER], 0);
-    for (uint8_t i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
+    for (uint8_t i = 0; i < GRRL_CONTEXT_PARTS; i++)
         assert_true(contexts[0].part[i] <= grrl_context_most[i]);
-    }
     assert_int_equal(grrl_context_of(&attempts, &model, LARGE_M, 3, contexts), GRRL_ERR_ARGUMENT);
 }
 
@@ -99,7 +98,7 @@ static void an_object_may_be_turned_and_mirrored(void **state)
     (void)state;
     struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
     grrl_attempts_look(&attempts, &model, LARGE_M);
-    for (uint8_t body = 0; body < 3; ++body) {
+    for (uint8_t body = 0; body < 3; body++) {
         struct grrl_context plain[GRRL_DIRECTIONS];
         describe(&model, body, plain);
         for (int mirror = -1; mirror <= 1; mirror += 2) {
@@ -117,9 +116,8 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
     struct grrl_context contexts[GRRL_DIRECTIONS];
     grrl_attempts_look(&attempts, &model, LARGE_M);
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 5; i++)
         grrl_attempts_add(&attempts, &model, 1, 2);
-    }
     grrl_attempts_add(&attempts, &model, 1, 0);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 3);

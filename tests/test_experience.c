@@ -32,7 +32,7 @@ static struct grrl_graph chain(const char *joints, grrl_label label)
     struct grrl_graph graph;
     grrl_graph_clear(&graph);
     assert_int_equal(grrl_graph_add_link(&graph, label, NULL), GRRL_OK);
-    for (uint8_t i = 0; joints[i] != '\0'; ++i) {
+    for (uint8_t i = 0; joints[i] != '\0'; i++) {
         assert_int_equal(grrl_graph_add_link(&graph, label, NULL), GRRL_OK);
         assert_int_equal(grrl_graph_add_joint(&graph, i, (uint8_t)(i + 1),
                                               joints[i] == 'R' ? GRRL_REVOLUTE : GRRL_PRISMATIC),
@@ -59,9 +59,8 @@ static void statistics_follow_the_targets(void **state)
     struct grrl_graph graph = chain("RP", 0);
     const float target[] = {1.0f, 3.0f, 2.0f, -1.0f};
     uint32_t index = 0;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4; i++)
         index = teach(&store, &graph, 0, 2, target[i]);
-    }
     const struct grrl_q *q = &store.experiences[index].q;
     assert_int_equal(store.n_experiences, 1);
     assert_int_equal(q->n, 4);
@@ -76,7 +75,7 @@ static void isomorphic_states_and_symmetric_actions_share_an_entry(void **state)
     print_message("seed %llu\n", (unsigned long long)SEED);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 1);
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < 300; round++) {
         struct grrl_experience_store store;
         init(&store, STATES, EXPERIENCES);
         struct grrl_graph graph = chain("RPPR", GRRL_PROPERTY_SMALL); /* a palindrome */
@@ -85,9 +84,8 @@ static void isomorphic_states_and_symmetric_actions_share_an_entry(void **state)
         shuffle(&random, graph.n, order);
         grrl_graph_permute(&graph, order, &shuffled);
         uint8_t place[GRRL_MAX_LINKS];
-        for (uint8_t i = 0; i < graph.n; ++i) {
+        for (uint8_t i = 0; i < graph.n; i++)
             place[order[i]] = i;
-        }
         uint32_t first = teach(&store, &graph, 1, 3, 1.0f);
         assert_int_equal(teach(&store, &graph, 3, 3, 1.0f), first);
         assert_int_equal(teach(&store, &shuffled, place[1], 3, 1.0f), first);
@@ -152,12 +150,12 @@ static void retrieval_reaches_as_far_as_it_may(void **state)
     (void)teach(&store, &small, 0, 0, 1.0f);
     (void)teach(&store, &large, 0, 1, 1.0f);
     (void)teach(&store, &longer, 0, 2, 1.0f);
-    for (int deepest = GRRL_RECALL_EXACT; deepest <= GRRL_RECALL_SUBSTRUCTURE; ++deepest) {
+    for (int deepest = GRRL_RECALL_EXACT; deepest <= GRRL_RECALL_SUBSTRUCTURE; deepest++) {
         struct grrl_recall_config config = everything;
         config.deepest = (enum grrl_recall_level)deepest;
         struct grrl_recall recall;
         grrl_experience_recall(&store, &small, &config, &recall);
-        for (int level = GRRL_RECALL_EXACT; level <= GRRL_RECALL_SUBSTRUCTURE; ++level) {
+        for (int level = GRRL_RECALL_EXACT; level <= GRRL_RECALL_SUBSTRUCTURE; level++) {
             bool known = recall.entry[0][level].experience != GRRL_NO_EXPERIENCE;
             assert_int_equal(known, level <= deepest);
         }
@@ -168,7 +166,7 @@ static void retrieval_reaches_as_far_as_it_may(void **state)
     strict.strict = true;
     struct grrl_recall recall;
     grrl_experience_recall(&store, &small, &strict, &recall);
-    for (int direction = 0; direction < 4; ++direction) {
+    for (int direction = 0; direction < 4; direction++) {
         bool known = recall.entry[0][direction].experience != GRRL_NO_EXPERIENCE;
         assert_int_equal(known, direction % 2 == 0);
     }
@@ -180,7 +178,7 @@ static struct grrl_graph star(uint8_t leaves)
     struct grrl_graph graph;
     grrl_graph_clear(&graph);
     assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
-    for (uint8_t i = 1; i <= leaves; ++i) {
+    for (uint8_t i = 1; i <= leaves; i++) {
         assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
         assert_int_equal(grrl_graph_add_joint(&graph, 0, i, GRRL_REVOLUTE), GRRL_OK);
     }
@@ -198,15 +196,13 @@ static void many_mappings_still_bind_every_link(void **state)
     struct grrl_recall recall;
     grrl_experience_recall(&store, &big, &everything, &recall);
     assert_int_equal(recall.entry[0][0].experience, GRRL_NO_EXPERIENCE);
-    for (int i = 1; i <= 7; ++i) {
+    for (int i = 1; i <= 7; i++)
         assert_int_equal(recall.entry[i][0].experience, leaf);
-    }
     init(&store, STATES, EXPERIENCES);
     leaf = teach(&store, &big, 2, 0, 1.0f);
     grrl_experience_recall(&store, &small, &everything, &recall);
-    for (int i = 1; i <= 5; ++i) {
+    for (int i = 1; i <= 5; i++)
         assert_int_equal(recall.entry[i][0].experience, leaf);
-    }
 }
 
 static void an_undecided_search_is_no_match(void **state)
@@ -221,9 +217,8 @@ static void an_undecided_search_is_no_match(void **state)
     struct grrl_recall recall;
     config.budget = 1;
     grrl_experience_recall(&store, &big, &config, &recall);
-    for (int i = 0; i < 5; ++i) {
+    for (int i = 0; i < 5; i++)
         assert_int_equal(recall.entry[i][0].experience, GRRL_NO_EXPERIENCE);
-    }
     config.budget = 100;
     grrl_experience_recall(&store, &big, &config, &recall);
     assert_int_not_equal(recall.entry[0][0].experience, GRRL_NO_EXPERIENCE);
@@ -236,13 +231,12 @@ static struct grrl_graph random_graph(struct grrl_random *random)
     grrl_graph_clear(&graph);
     uint8_t n = (uint8_t)(1 + grrl_random_below(random, 5));
     unsigned density = 1 + grrl_random_below(random, 3);
-    for (uint8_t i = 0; i < n; ++i) {
+    for (uint8_t i = 0; i < n; i++) {
         grrl_label label = grrl_random_below(random, 3);
-        if (GRRL_MAX_PROPERTIES > 1) {
+        if (GRRL_MAX_PROPERTIES > 1)
             label |= (grrl_label)grrl_random_below(random, 2) << 8;
-        }
         assert_int_equal(grrl_graph_add_link(&graph, label, NULL), GRRL_OK);
-        for (uint8_t j = 0; j < i; ++j) {
+        for (uint8_t j = 0; j < i; j++) {
             if (grrl_random_below(random, 4) < density) {
                 assert_int_equal(
                     grrl_graph_add_joint(&graph, i, j,
@@ -259,29 +253,27 @@ static bool naive_maps(const struct grrl_graph *part, const struct grrl_graph *w
                        grrl_label mask, uint8_t p, uint8_t w)
 {
     uint32_t combinations = 1;
-    for (uint8_t i = 0; i < part->n; ++i) {
+    for (uint8_t i = 0; i < part->n; i++)
         combinations *= whole->n;
-    }
-    for (uint32_t combination = 0; combination < combinations; ++combination) {
+    for (uint32_t combination = 0; combination < combinations; combination++) {
         uint8_t map[8] = {0};
         uint32_t rest = combination;
-        for (uint8_t i = 0; i < part->n; ++i) {
+        for (uint8_t i = 0; i < part->n; i++) {
             map[i] = (uint8_t)(rest % whole->n);
             rest /= whole->n;
         }
         bool fits = map[p] == w;
-        for (uint8_t i = 0; i < part->n && fits; ++i) {
+        for (uint8_t i = 0; i < part->n && fits; i++) {
             fits = grrl_label_masked(part->label[i], mask) ==
                    grrl_label_masked(whole->label[map[i]], mask);
-            for (uint8_t j = 0; j < i && fits; ++j) {
+            for (uint8_t j = 0; j < i && fits; j++) {
                 int joint = grrl_graph_joint(part, i, j);
                 fits = map[i] != map[j] && ((!exact && joint == GRRL_NO_JOINT) ||
                                             grrl_graph_joint(whole, map[i], map[j]) == joint);
             }
         }
-        if (fits) {
+        if (fits)
             return true;
-        }
     }
     return false;
 }
@@ -291,19 +283,16 @@ static uint32_t naive_closeness(const struct grrl_graph *stored, uint8_t v,
                                 const struct grrl_graph *current, uint8_t c)
 {
     grrl_label used = 0;
-    for (uint8_t i = 0; i < stored->n; ++i) {
+    for (uint8_t i = 0; i < stored->n; i++)
         used |= stored->label[i];
-    }
-    for (uint8_t i = 0; i < current->n; ++i) {
+    for (uint8_t i = 0; i < current->n; i++)
         used |= current->label[i];
-    }
     uint32_t places = (uint32_t)((used & 0xff) != 0) + (uint32_t)((used & 0xff00) != 0);
     if (stored->n == current->n) {
         grrl_label mask = GRRL_ALL_PROPERTIES;
-        for (uint32_t dropped = 0; dropped <= places; ++dropped) {
-            if (naive_maps(stored, current, true, mask, v, c)) {
+        for (uint32_t dropped = 0; dropped <= places; dropped++) {
+            if (naive_maps(stored, current, true, mask, v, c))
                 return (dropped == 0 ? 0u : 0x10000u) + dropped;
-            }
             bool second = dropped == 0 && (used & 0xff00) != 0;
             mask = second ? UINT64_C(0xff) : GRRL_NO_PROPERTIES;
         }
@@ -311,13 +300,12 @@ static uint32_t naive_closeness(const struct grrl_graph *stored, uint8_t v,
     uint32_t distance = (uint32_t)(abs_difference(stored->n, current->n) +
                                    abs_difference((int)grrl_graph_joint_count(stored),
                                                   (int)grrl_graph_joint_count(current)));
-    for (int bare = 0; bare < 2; ++bare) {
+    for (int bare = 0; bare < 2; bare++) {
         grrl_label mask = bare ? GRRL_NO_PROPERTIES : GRRL_ALL_PROPERTIES;
         bool forth = stored->n <= current->n && naive_maps(stored, current, false, mask, v, c);
         bool back = current->n <= stored->n && naive_maps(current, stored, false, mask, c, v);
-        if (forth || back) {
+        if (forth || back)
             return 0x20000u + distance * 16u + (bare ? places : 0u);
-        }
     }
     return UINT32_MAX;
 }
@@ -328,12 +316,12 @@ static void check_against_naive(const struct grrl_experience_store *store,
     struct grrl_recall recall;
     grrl_experience_recall(store, current, &everything, &recall);
     assert_int_equal(recall.n_links, current->n);
-    for (uint8_t c = 0; c < current->n; ++c) {
+    for (uint8_t c = 0; c < current->n; c++) {
         uint32_t best[GRRL_DIRECTIONS];
         uint32_t closest[GRRL_DIRECTIONS];
         memset(best, 0xff, sizeof best);
         memset(closest, 0xff, sizeof closest);
-        for (uint32_t i = 0; i < store->n_experiences; ++i) {
+        for (uint32_t i = 0; i < store->n_experiences; i++) {
             const struct grrl_experience *e = &store->experiences[i];
             struct grrl_graph stored;
             grrl_experience_graph(&store->states[e->state], &stored);
@@ -346,7 +334,7 @@ static void check_against_naive(const struct grrl_experience_store *store,
                 closest[e->direction] = closeness;
             }
         }
-        for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+        for (int direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             const struct grrl_recall_entry *entry = &recall.entry[c][direction];
             assert_int_equal(entry->experience, best[direction]);
             if (entry->experience != GRRL_NO_EXPERIENCE) {
@@ -365,16 +353,16 @@ static void recall_agrees_with_trying_every_mapping(void **state)
     print_message("seed %llu\n", (unsigned long long)SEED);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 2);
-    for (int round = 0; round < 60; ++round) {
+    for (int round = 0; round < 60; round++) {
         struct grrl_experience_store store;
         init(&store, STATES, EXPERIENCES);
-        for (int i = 0; i < 30; ++i) {
+        for (int i = 0; i < 30; i++) {
             struct grrl_graph graph = random_graph(&random);
             uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
             uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
             (void)teach(&store, &graph, link, direction, 1.0f);
         }
-        for (int i = 0; i < 6; ++i) {
+        for (int i = 0; i < 6; i++) {
             struct grrl_graph graph = random_graph(&random);
             check_against_naive(&store, &graph);
         }
@@ -436,10 +424,10 @@ static void small_stores_stay_sound(void **state)
     struct grrl_random random;
     grrl_random_init(&random, SEED, 3);
     const uint32_t capacity[][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 5}, {5, 5}, {5, 2}};
-    for (unsigned k = 0; k < sizeof capacity / sizeof capacity[0]; ++k) {
+    for (unsigned k = 0; k < sizeof capacity / sizeof capacity[0]; k++) {
         struct grrl_experience_store store;
         init(&store, capacity[k][0], capacity[k][1]);
-        for (int i = 0; i < 400; ++i) {
+        for (int i = 0; i < 400; i++) {
             struct grrl_graph graph = random_graph(&random);
             uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
             uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
@@ -450,9 +438,8 @@ static void small_stores_stay_sound(void **state)
             assert_int_equal(recall.entry[link][direction].experience, index);
         }
         assert_true(store.evictions > 0);
-        if (capacity[k][1] <= capacity[k][0]) {
+        if (capacity[k][1] <= capacity[k][0])
             assert_int_equal(store.high_water, capacity[k][1]);
-        }
     }
 }
 
@@ -468,21 +455,19 @@ static void an_index_changes_nothing_that_is_recalled(void **state)
     struct grrl_experience_store plain;
     struct grrl_experience_store indexed[2];
     init(&plain, STATES, EXPERIENCES);
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; k++)
         grrl_experience_init(&indexed[k], more_states[k], STATES, more_experiences[k], EXPERIENCES);
-    }
     grrl_experience_use_index(&indexed[0], &index[0], rows[0]);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 4);
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 1000; i++) {
         struct grrl_graph graph = random_graph(&random);
         struct grrl_recall_config config = everything;
-        if (i % 4 != 0) { /* so few that some of a distance are left out */
+        if (i % 4 != 0) /* so few that some of a distance are left out */
             config.states = 1 + grrl_random_below(&random, 12);
-        }
         struct grrl_recall expected;
         grrl_experience_recall(&plain, &graph, &config, &expected);
-        for (int k = 0; k < 2; ++k) {
+        for (int k = 0; k < 2; k++) {
             struct grrl_recall recall;
             grrl_experience_recall(&indexed[k], &graph, &config, &recall);
             assert_memory_equal(recall.entry, expected.entry, sizeof recall.entry);
@@ -490,12 +475,10 @@ static void an_index_changes_nothing_that_is_recalled(void **state)
         uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
         uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
         uint32_t entry = teach(&plain, &graph, link, direction, 1.0f);
-        for (int k = 0; k < 2; ++k) {
+        for (int k = 0; k < 2; k++)
             assert_int_equal(teach(&indexed[k], &graph, link, direction, 1.0f), entry);
-        }
-        if (i == 600) {
+        if (i == 600)
             grrl_experience_use_index(&indexed[1], &index[1], rows[1]);
-        }
     }
     assert_true(plain.evictions > 100);
 }
@@ -511,7 +494,7 @@ static void the_closest_of_very_many_are_found(void **state)
     grrl_experience_init(&store, many_states, MANY, many_experiences, MANY);
     struct grrl_graph query = chain("RR", 0);
     for (uint8_t length = 8; length >= 3; --length) { /* ever closer, all with the query in them */
-        for (grrl_label mark = 1; mark <= GRRL_RECALL_STATES + 8; ++mark) {
+        for (grrl_label mark = 1; mark <= GRRL_RECALL_STATES + 8; mark++) {
             struct grrl_graph graph = chain("RR", 0);
             while (graph.n <= length) {
                 grrl_label label = graph.n == length ? mark : 0;
@@ -567,11 +550,9 @@ static void an_empty_store_knows_nothing(void **state)
     memset(&recall, 0, sizeof recall);
     grrl_experience_recall(&store, &graph, &everything, &recall);
     assert_int_equal(recall.n_links, 2);
-    for (int link = 0; link < GRRL_MAX_LINKS; ++link) {
-        for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (int link = 0; link < GRRL_MAX_LINKS; link++)
+        for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
             assert_int_equal(recall.entry[link][direction].experience, GRRL_NO_EXPERIENCE);
-        }
-    }
 }
 
 int main(void)

@@ -49,7 +49,7 @@ static struct grrl_graph random_graph(struct grrl_random *random)
     struct grrl_graph graph;
     grrl_graph_clear(&graph);
     uint8_t n = (uint8_t)(1 + grrl_random_below(random, 6));
-    for (uint8_t i = 0; i < n; ++i) {
+    for (uint8_t i = 0; i < n; i++) {
         assert_int_equal(grrl_graph_add_link(&graph, 1 + grrl_random_below(random, 2), NULL),
                          GRRL_OK);
         if (i > 0) {
@@ -72,15 +72,14 @@ static int set_up(void **state)
     second.calls_left = -1;
     init(&original, STATES, EXPERIENCES);
     init(&copy, STATES, EXPERIENCES);
-    for (int i = 0; i < 80; ++i) {
+    for (int i = 0; i < 80; i++) {
         struct grrl_graph graph = random_graph(&random);
         float target = 5.0f * grrl_random_uniform(&random) - 1.0f;
         if (grrl_experience_update(&original.store, &graph,
                                    (uint8_t)grrl_random_below(&random, graph.n),
                                    (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS), target,
-                                   0.3f, NULL) != GRRL_OK) {
+                                   0.3f, NULL) != GRRL_OK)
             return -1;
-        }
     }
     return save(&original, &file) == GRRL_OK ? 0 : -1;
 }
@@ -102,7 +101,7 @@ static void what_was_saved_is_loaded_and_saved_again(void **state)
     check_store(&copy.store);
     assert_int_equal(copy.store.clock, original.store.clock);
     assert_int_equal(copy.store.high_water, original.store.n_experiences);
-    for (uint32_t i = 0; i < original.store.n_experiences; ++i) {
+    for (uint32_t i = 0; i < original.store.n_experiences; i++) {
         const struct grrl_experience *a = &original.experiences[i];
         const struct grrl_experience *b = &copy.experiences[i];
         assert_int_equal(a->state, b->state);
@@ -126,18 +125,16 @@ static void a_loaded_store_goes_on_like_the_first(void **state)
     const struct grrl_recall_config config = {.deepest = GRRL_RECALL_SUBSTRUCTURE,
                                               .budget = GRRL_MATCH_BUDGET,
                                               .states = GRRL_RECALL_STATES};
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 100; i++) {
         struct grrl_graph graph = random_graph(&random);
         static struct grrl_recall a, b;
         grrl_experience_recall(&original.store, &graph, &config, &a);
         grrl_experience_recall(&copy.store, &graph, &config, &b);
         uint8_t link = (uint8_t)grrl_random_below(&random, graph.n);
         uint8_t direction = (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS);
-        for (uint8_t k = 0; k < graph.n; ++k) {
-            for (int d = 0; d < GRRL_DIRECTIONS; ++d) {
+        for (uint8_t k = 0; k < graph.n; k++)
+            for (int d = 0; d < GRRL_DIRECTIONS; d++)
                 assert_int_equal(a.entry[k][d].experience, b.entry[k][d].experience);
-            }
-        }
         uint32_t x, y;
         assert_int_equal(
             grrl_experience_update(&original.store, &graph, link, direction, 1.0f, 0.3f, &x),
@@ -164,7 +161,7 @@ static void a_file_cut_anywhere_leaves_an_empty_store(void **state)
 {
     (void)state;
     size_t whole = file.size;
-    for (size_t size = 0; size < whole; ++size) {
+    for (size_t size = 0; size < whole; size++) {
         file.size = size;
         assert_int_equal(load(&copy, &file), GRRL_ERR_IO);
         check_empty(&copy.store);
@@ -176,7 +173,7 @@ static void a_torn_file_gives_what_was_whole(void **state)
     (void)state;
     size_t whole = file.size;
     uint32_t total = original.store.n_experiences;
-    for (size_t size = 0; size < whole; ++size) {
+    for (size_t size = 0; size < whole; size++) {
         uint32_t lost;
         file.size = size;
         file.at = 0;
@@ -188,7 +185,7 @@ static void a_torn_file_gives_what_was_whole(void **state)
                              : 0;
         assert_int_equal(copy.store.n_experiences, records);
         assert_int_equal(lost, size < HEADER + CRC ? 0 : total - records);
-        for (uint32_t i = 0; i < records; ++i) {
+        for (uint32_t i = 0; i < records; i++) {
             assert_memory_equal(&copy.experiences[i].q, &original.experiences[i].q,
                                 sizeof(struct grrl_q));
         }
@@ -199,13 +196,13 @@ static void a_failing_callback_is_told(void **state)
 {
     (void)state;
     int records = 1 + (int)original.store.n_states + (int)original.store.n_experiences;
-    for (int calls = 0; calls < records; ++calls) {
+    for (int calls = 0; calls < records; calls++) {
         second.calls_left = calls;
         assert_int_equal(save(&original, &second), GRRL_ERR_IO);
     }
     second.calls_left = records;
     assert_int_equal(save(&original, &second), GRRL_OK);
-    for (int calls = 0; calls < records; ++calls) {
+    for (int calls = 0; calls < records; calls++) {
         file.calls_left = calls;
         assert_int_equal(load(&copy, &file), GRRL_ERR_IO);
         check_empty(&copy.store);
@@ -218,7 +215,7 @@ static void no_damaged_byte_goes_unseen(void **state)
     print_message("seed %llu\n", (unsigned long long)SEED);
     struct grrl_random random;
     grrl_random_init(&random, SEED, 3);
-    for (size_t i = 0; i < file.size; ++i) {
+    for (size_t i = 0; i < file.size; i++) {
         uint8_t was = file.bytes[i];
         file.bytes[i] = (uint8_t)(was ^ (1u + grrl_random_below(&random, 255)));
         enum grrl_status status = load(&copy, &file);
@@ -241,8 +238,8 @@ static void no_damaged_byte_goes_unseen(void **state)
 static uint32_t naive_crc(uint32_t crc, const uint8_t *bytes, size_t n)
 {
     uint32_t value = crc ^ UINT32_C(0xffffffff);
-    for (size_t i = 0; i < n; ++i) {
-        for (unsigned bit = 0; bit < 8; ++bit) {
+    for (size_t i = 0; i < n; i++) {
+        for (unsigned bit = 0; bit < 8; bit++) {
             uint32_t low = (value ^ (uint32_t)(bytes[i] >> bit)) & 1u;
             value = (value >> 1) ^ (low != 0 ? UINT32_C(0xedb88320) : 0);
         }
@@ -252,9 +249,8 @@ static uint32_t naive_crc(uint32_t crc, const uint8_t *bytes, size_t n)
 
 static void put_crc(uint8_t *at, uint32_t crc)
 {
-    for (unsigned i = 0; i < CRC; ++i) {
+    for (unsigned i = 0; i < CRC; i++)
         at[i] = (uint8_t)(crc >> (8 * i));
-    }
 }
 
 /* Makes all CRCs right again, as far as the records can be told apart. */
@@ -265,11 +261,10 @@ static void sign(struct memory_file *damaged)
     uint32_t crc = naive_crc(0, bytes, HEADER);
     put_crc(bytes + HEADER, crc);
     size_t at = HEADER + CRC;
-    for (unsigned record = 0; at < damaged->size; ++record) {
+    for (unsigned record = 0; at < damaged->size; record++) {
         size_t size = record < n_states ? 1 + (size_t)bytes[at] * 16 : EXPERIENCE - 4;
-        if (at + size + CRC > damaged->size) {
+        if (at + size + CRC > damaged->size)
             return;
-        }
         crc = naive_crc(crc, bytes + at, size);
         put_crc(bytes + at + size, crc);
         at += size + CRC;
@@ -292,7 +287,7 @@ static void damage_with_a_right_crc_harms_nothing(void **state)
     struct grrl_random random;
     grrl_random_init(&random, SEED, 4);
     unsigned refused = 0;
-    for (int round = 0; round < 4000; ++round) {
+    for (int round = 0; round < 4000; round++) {
         memcpy(&second, &file, sizeof file);
         for (unsigned k = grrl_random_below(&random, 3) + 1; k > 0; --k) {
             size_t at = 12 + grrl_random_below(&random, (uint32_t)(file.size - 12));
@@ -309,7 +304,7 @@ static void damage_with_a_right_crc_harms_nothing(void **state)
             static struct grrl_recall recall;
             grrl_experience_recall(&copy.store, &graph, &config, &recall);
         } else {
-            ++refused;
+            refused++;
             check_empty(&copy.store);
         }
     }
@@ -343,13 +338,12 @@ static void content_that_save_never_writes_is_corrupt(void **state)
         {experience_at(1) - 4, 0xff} /* a wrong CRC alone, not signed again below */
     };
     enum { DAMAGES = sizeof damage / sizeof damage[0] };
-    for (unsigned i = 0; i < DAMAGES; ++i) {
+    for (unsigned i = 0; i < DAMAGES; i++) {
         memcpy(&second, &file, sizeof file);
         assert_int_not_equal(second.bytes[damage[i].at], damage[i].value);
         second.bytes[damage[i].at] = damage[i].value;
-        if (i + 1 < DAMAGES) {
+        if (i + 1 < DAMAGES)
             sign(&second);
-        }
         assert_int_equal(load(&copy, &second), GRRL_ERR_CORRUPT);
         check_empty(&copy.store);
     }
@@ -396,7 +390,7 @@ static void other_versions_and_builds_are_told(void **state)
         size_t at;
         uint8_t value;
     } other[] = {{8, 1}, {9, 1}, {10, GRRL_MAX_PROPERTIES + 1}, {11, 8}};
-    for (unsigned i = 0; i < sizeof other / sizeof other[0]; ++i) {
+    for (unsigned i = 0; i < sizeof other / sizeof other[0]; i++) {
         memcpy(&second, &file, sizeof file);
         second.bytes[other[i].at] = other[i].value;
         sign(&second);

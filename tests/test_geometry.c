@@ -23,7 +23,7 @@ static void sines_are_accurate(void **state)
 {
     (void)state;
     double error = 0.0;
-    for (int i = -SAMPLES; i <= SAMPLES; ++i) {
+    for (int i = -SAMPLES; i <= SAMPLES; i++) {
         float x = (float)i * (100.0f / SAMPLES);
         error = worst(error, fabs((double)grrl_sin(x) - sin((double)x)));
         error = worst(error, fabs((double)grrl_cos(x) - cos((double)x)));
@@ -39,9 +39,9 @@ static void atan2_is_accurate_in_every_quadrant(void **state)
     (void)state;
     double error = 0.0;
     const float radius[] = {1e-30f, 1e-3f, 1.0f, 1e20f};
-    for (int i = -SAMPLES / 4; i <= SAMPLES / 4; ++i) {
+    for (int i = -SAMPLES / 4; i <= SAMPLES / 4; i++) {
         double angle = (double)i * (4.0 * (double)GRRL_PI / SAMPLES);
-        for (unsigned r = 0; r < sizeof radius / sizeof radius[0]; ++r) {
+        for (unsigned r = 0; r < sizeof radius / sizeof radius[0]; r++) {
             float x = radius[r] * (float)cos(angle);
             float y = radius[r] * (float)sin(angle);
             double difference = fabs((double)grrl_atan2(y, x) - atan2((double)y, (double)x));
@@ -60,7 +60,7 @@ static void exp_is_accurate_and_saturates(void **state)
 {
     (void)state;
     double error = 0.0;
-    for (int i = 0; i <= SAMPLES; ++i) {
+    for (int i = 0; i <= SAMPLES; i++) {
         float x = -87.33f + (float)i * (88.72f + 87.33f) / SAMPLES;
         double truth = exp((double)x);
         error = worst(error, fabs((double)grrl_exp(x) - truth) / truth);
@@ -81,17 +81,15 @@ static void log_is_accurate_over_the_whole_range(void **state)
         float x;
         memcpy(&x, &bits, sizeof x);
         double truth = log((double)x);
-        if (x == 1.0f) {
+        if (x == 1.0f)
             continue;
-        }
         error = worst(error, fabs(((double)grrl_log(x) - truth) / truth));
     }
-    for (int i = -2000; i <= 2000; ++i) { /* near one, where the result vanishes */
+    for (int i = -2000; i <= 2000; i++) { /* near one, where the result vanishes */
         float x = 1.0f + (float)i * FLT_EPSILON;
         double truth = log((double)x);
-        if (i != 0) {
+        if (i != 0)
             error = worst(error, fabs(((double)grrl_log(x) - truth) / truth));
-        }
     }
     print_message("log: %g\n", error);
     assert_true(error < 1e-6);
@@ -111,7 +109,7 @@ static void finiteness_is_told(void **state)
 static void angles_wrap(void **state)
 {
     (void)state;
-    for (int i = -SAMPLES; i <= SAMPLES; ++i) {
+    for (int i = -SAMPLES; i <= SAMPLES; i++) {
         float x = (float)i * (100.0f / SAMPLES);
         float wrapped = grrl_wrap_rad(x);
         assert_true(wrapped > -GRRL_PI && wrapped <= GRRL_PI);
@@ -137,7 +135,7 @@ static void poses_turn_shift_and_undo(void **state)
     struct grrl_pose quarter = {{1.0f, 2.0f}, 0.0f, 1.0f};
     struct grrl_vec2 moved = grrl_transform(quarter, (struct grrl_vec2){3.0f, 0.0f});
     assert_true(moved.x == 1.0f && moved.y == 5.0f);
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 2000; i++) {
         float angle = uniform(&random, -GRRL_PI, GRRL_PI);
         struct grrl_pose pose = {
             {uniform(&random, -1, 1), uniform(&random, -1, 1)}, grrl_cos(angle), grrl_sin(angle)};
@@ -147,9 +145,8 @@ static void poses_turn_shift_and_undo(void **state)
         struct grrl_vec2 turned = grrl_rotate(pose, p);
         assert_true(fabsf(grrl_vec2_dot(turned, turned) - grrl_vec2_dot(p, p)) < 1e-6f);
         float turn = grrl_atan2(grrl_vec2_cross(p, turned), grrl_vec2_dot(p, turned));
-        if (grrl_vec2_length(p) > 0.01f) {
+        if (grrl_vec2_length(p) > 0.01f)
             assert_true(fabsf(grrl_wrap_rad(turn - angle)) < 3e-6f);
-        }
     }
 }
 
@@ -160,7 +157,7 @@ static void principal_axes_rebuild_the_matrix(void **state)
     struct grrl_random random;
     grrl_random_init(&random, SEED, 2);
     const float magnitude[] = {1e-30f, 1e-6f, 1.0f, 1e30f};
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 20000; i++) {
         float m = magnitude[i % 4];
         float xx = m * uniform(&random, -1, 1);
         float xy = m * uniform(&random, -1, 1) * ((i & 4) != 0 ? 1e-6f : 1.0f);
@@ -182,7 +179,7 @@ static void degenerate_matrices_have_axes_too(void **state)
     (void)state;
     const float matrix[][3] = {{0.0f, 0.0f, 0.0f}, {2.0f, 0.0f, 2.0f},     {1e-44f, 0.0f, 1e-44f},
                                {NAN, 0.0f, 1.0f},  {INFINITY, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f}};
-    for (unsigned i = 0; i < sizeof matrix / sizeof matrix[0]; ++i) {
+    for (unsigned i = 0; i < sizeof matrix / sizeof matrix[0]; i++) {
         float major, minor;
         struct grrl_vec2 axis;
         grrl_principal_axes(matrix[i][0], matrix[i][1], matrix[i][2], &major, &minor, &axis);

@@ -40,17 +40,16 @@ static void move_model(const struct motion *motion, const struct grrl_model *mod
                        struct grrl_model *moved)
 {
     *moved = *model;
-    for (int i = 0; i < model->n_bodies; ++i) {
+    for (int i = 0; i < model->n_bodies; i++) {
         moved->body[i].centroid_m = move_point(motion, model->body[i].centroid_m);
         moved->body[i].axis = move_vector(motion, model->body[i].axis);
     }
-    for (int j = 0; j < model->n_joints; ++j) {
+    for (int j = 0; j < model->n_joints; j++) {
         moved->joint[j].point_m = move_point(motion, model->joint[j].point_m);
         moved->joint[j].axis = move_vector(motion, model->joint[j].axis);
     }
-    for (int i = 0; i < model->n_features; ++i) {
+    for (int i = 0; i < model->n_features; i++)
         moved->feature_m[i] = move_point(motion, model->feature_m[i]);
-    }
 }
 
 static float uniform(struct grrl_random *random, float low, float high)
@@ -71,12 +70,12 @@ static uint8_t add_body(struct grrl_model *model, struct grrl_vec2 centre, float
     body->axis = (struct grrl_vec2){pose.c, pose.s};
     body->length_m = length_m;
     body->width_m = 0.035f;
-    for (uint16_t i = 0; i < n; ++i) {
+    for (uint16_t i = 0; i < n; i++) {
         struct grrl_vec2 local = {uniform(random, -0.5f, 0.5f) * length_m,
                                   uniform(random, -0.0175f, 0.0175f)};
         model->feature_m[model->n_features] = grrl_transform(pose, local);
         model->feature_body[model->n_features] = model->n_bodies;
-        ++model->n_features;
+        model->n_features++;
     }
     return model->n_bodies++;
 }
@@ -98,7 +97,7 @@ static void random_model(struct grrl_model *model, struct grrl_random *random)
     memset(model, 0, sizeof *model);
     unsigned most = GRRL_MAX_LINKS < 8 ? GRRL_MAX_LINKS : 8;
     unsigned n = 2 + grrl_random_below(random, most - 1);
-    for (unsigned i = 0; i < n; ++i) {
+    for (unsigned i = 0; i < n; i++) {
         struct grrl_vec2 at = {uniform(random, -0.3f, 0.3f), uniform(random, -0.3f, 0.3f)};
         uint8_t body = add_body(model, at, uniform(random, -GRRL_PI, GRRL_PI),
                                 uniform(random, 0.05f, 0.2f), 6, random);
@@ -124,7 +123,7 @@ static void motions_of_the_model_move_frame_and_push(void **state)
     struct grrl_grounding_config config;
     grrl_grounding_config_default(&config);
     static struct grrl_model model, moved;
-    for (int i = 0; i < MODELS; ++i) {
+    for (int i = 0; i < MODELS; i++) {
         random_model(&model, &random);
         float angle = uniform(&random, -GRRL_PI, GRRL_PI);
         struct motion motion = {{{uniform(&random, -0.5f, 0.5f), uniform(&random, -0.5f, 0.5f)},
@@ -132,16 +131,15 @@ static void motions_of_the_model_move_frame_and_push(void **state)
                                  grrl_sin(angle)},
                                 grrl_random_below(&random, 2) == 1};
         move_model(&motion, &model, &moved);
-        for (uint8_t body = 0; body < model.n_bodies; ++body) {
-            if (grrl_random_below(&random, 2) == 1) { /* an axis has no sign */
+        for (uint8_t body = 0; body < model.n_bodies; body++) {
+            if (grrl_random_below(&random, 2) == 1) /* an axis has no sign */
                 moved.body[body].axis = grrl_vec2_scale(moved.body[body].axis, -1.0f);
-            }
             struct grrl_link_frame a, b;
             assert_int_equal(grrl_grounding_frame(&model, body, &a), GRRL_OK);
             assert_int_equal(grrl_grounding_frame(&moved, body, &b), GRRL_OK);
             assert_true(apart(move_vector(&motion, a.forward), b.forward) < TOLERANCE_M);
             assert_true(apart(move_vector(&motion, a.side), b.side) < TOLERANCE_M);
-            for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+            for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
                 struct grrl_push p, q;
                 assert_int_equal(grrl_grounding_push(&model, &config, body, direction, &p),
                                  GRRL_OK);
@@ -161,7 +159,7 @@ static void row(struct grrl_model *model, unsigned n, const float *length_m)
     grrl_random_init(&random, SEED, 2);
     memset(model, 0, sizeof *model);
     float x = 0.0f;
-    for (unsigned i = 0; i < n; ++i) {
+    for (unsigned i = 0; i < n; i++) {
         x += i > 0 ? 0.5f * length_m[i] : 0.0f;
         (void)add_body(model, (struct grrl_vec2){x, 0.0f}, 0.0f, length_m[i], 6, &random);
         x += 0.5f * length_m[i];
@@ -246,7 +244,7 @@ static void every_joint_of_a_loop_is_followed_once(void **state)
     const float equal[] = {0.1f, 0.1f, 0.1f, 0.1f};
     row(&model, 4, equal);
     add_joint(&model, 3, 0, GRRL_REVOLUTE, (struct grrl_vec2){-0.05f, 0.0f});
-    for (uint8_t body = 0; body < 4; ++body) {
+    for (uint8_t body = 0; body < 4; body++) {
         struct grrl_link_frame frame;
         assert_int_equal(grrl_grounding_frame(&model, body, &frame), GRRL_OK);
     }
@@ -297,7 +295,7 @@ static void backing_off_has_an_end(void **state)
     grrl_grounding_config_default(&config);
     model.n_bodies = 2;
     model.body[0].axis = (struct grrl_vec2){1.0f, 0.0f};
-    for (uint16_t i = 0; i < 60; ++i) {
+    for (uint16_t i = 0; i < 60; i++) {
         model.feature_m[i] = (struct grrl_vec2){-0.01f * (float)i, 0.0f};
         model.feature_body[i] = i == 0 ? 0 : 1;
     }
@@ -333,8 +331,8 @@ static void configurations_are_checked(void **state)
     float *const field[] = {&config.finger_radius_m, &config.clearance_m, &config.travel_m,
                             &config.speed_m_s,       &config.force_n,     &config.timeout_s};
     const float wrong[] = {0.0f, -1.0f, NAN, INFINITY};
-    for (unsigned i = 0; i < sizeof field / sizeof field[0]; ++i) {
-        for (unsigned j = 0; j < sizeof wrong / sizeof wrong[0]; ++j) {
+    for (unsigned i = 0; i < sizeof field / sizeof field[0]; i++) {
+        for (unsigned j = 0; j < sizeof wrong / sizeof wrong[0]; j++) {
             float was = *field[i];
             *field[i] = wrong[j];
             assert_int_equal(grrl_grounding_config_check(&config), GRRL_ERR_ARGUMENT);

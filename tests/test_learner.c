@@ -62,7 +62,7 @@ static unsigned run_trial(struct fixture *fixture, const char *joints, uint32_t 
     grrl_learner_begin_trial(learner, trial);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     float sum = 0.0f;
-    for (unsigned pushes = 1; pushes <= MOST_PUSHES; ++pushes) {
+    for (unsigned pushes = 1; pushes <= MOST_PUSHES; pushes++) {
         struct grrl_decision decision;
         struct grrl_lesson lesson;
         assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
@@ -84,9 +84,8 @@ static unsigned run_trials(struct fixture *fixture, const char *joints, uint32_t
                            uint32_t *hash)
 {
     unsigned pushes = 0;
-    for (uint32_t trial = from; trial < from + n; ++trial) {
+    for (uint32_t trial = from; trial < from + n; trial++)
         pushes += run_trial(fixture, joints, trial, hash);
-    }
     return pushes;
 }
 
@@ -100,8 +99,8 @@ static void learning_needs_fewer_pushes_than_chance(void **state)
     unsigned learned[LEARNERS] = {0};
     unsigned chance = 0;
     uint32_t hash = 0;
-    for (uint64_t seed = SEED; seed < SEED + 5; ++seed) {
-        for (int i = 0; i < LEARNERS; ++i) {
+    for (uint64_t seed = SEED; seed < SEED + 5; seed++) {
+        for (int i = 0; i < LEARNERS; i++) {
             init(&one, learners[i], seed);
             (void)run_trials(&one, "RPRPR", 1, 20, &hash);
             learned[i] += run_trials(&one, "RPRPR", 21, 20, &hash);
@@ -120,10 +119,10 @@ static void experience_of_one_object_helps_with_another(void **state)
     (void)state;
     print_message("seed %llu\n", (unsigned long long)SEED);
     uint32_t hash = 0;
-    for (int i = 0; i < LEARNERS; ++i) {
+    for (int i = 0; i < LEARNERS; i++) {
         unsigned with = 0;
         unsigned without = 0;
-        for (uint64_t seed = SEED; seed < SEED + 40; ++seed) {
+        for (uint64_t seed = SEED; seed < SEED + 40; seed++) {
             init(&one, learners[i], seed);
             (void)run_trials(&one, "RPR", 1, 20, &hash);
             with += run_trials(&one, "RPRPR", 21, 5, &hash);
@@ -138,7 +137,7 @@ static void experience_of_one_object_helps_with_another(void **state)
 static void the_same_outcomes_give_the_same_choices(void **state)
 {
     (void)state;
-    for (int i = 0; i < LEARNERS; ++i) {
+    for (int i = 0; i < LEARNERS; i++) {
         uint32_t a = 0;
         uint32_t b = 0;
         uint32_t c = 0;
@@ -159,7 +158,7 @@ static void what_was_learned_can_be_saved(void **state)
 {
     (void)state;
     const struct grrl_experience_io io = memory_file_io(&file);
-    for (int i = 0; i < LEARNERS; ++i) {
+    for (int i = 0; i < LEARNERS; i++) {
         uint32_t hash = 0;
         uint32_t a = 0;
         uint32_t b = 0;
@@ -286,9 +285,8 @@ static void a_decision_by_experience_tells_why(void **state)
     assert_true(decision.choice.phi == 0.0f && decision.push.force_n == 10.0f);
     assert_int_equal(decision.body_number, 1);
     start(learner);
-    for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
         (void)adopt(learner, 1, direction == 2 ? 3 : direction, false);
-    }
     (void)adopt(learner, 1, 2, false);
     world_start("RPR");
     start(learner);
@@ -383,7 +381,7 @@ static void calls_out_of_order_are_refused(void **state)
 static void a_learner_of_one_experience_works(void **state)
 {
     (void)state;
-    for (int i = 0; i < LEARNERS; ++i) {
+    for (int i = 0; i < LEARNERS; i++) {
         uint32_t hash = 0;
         one.config.policy.kind = learners[i];
         one.memory.cases_capacity = one.memory.states_capacity = 1;
@@ -412,7 +410,7 @@ static void a_policy_needs_its_memory(void **state)
         {GRRL_POLICY_PAPER, 0, STATES, EXPERIENCES, GRRL_OK},
         {GRRL_POLICY_RANDOM, 0, 0, 0, GRRL_OK},
     };
-    for (size_t i = 0; i < sizeof given / sizeof given[0]; ++i) {
+    for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
         one.config.policy.kind = given[i].kind;
         one.memory.cases = given[i].cases > 0 ? all.cases : NULL;
         one.memory.cases_capacity = given[i].cases;

@@ -100,12 +100,11 @@ enum { N_SIZES = sizeof sizes / sizeof sizes[0], LINE_BYTES = 200 };
 /* The entry whose name is the first cell of a table's row, or -1. */
 static int find_row(const char *line)
 {
-    for (int i = 0; i < N_SIZES; ++i) {
+    for (int i = 0; i < N_SIZES; i++) {
         size_t length = strlen(sizes[i].name);
         if (strncmp(line, "| ", 2) == 0 && strncmp(line + 2, sizes[i].name, length) == 0 &&
-            strncmp(line + 2 + length, " | ", 3) == 0) {
+            strncmp(line + 2 + length, " | ", 3) == 0)
             return i;
-        }
     }
     return -1;
 }
@@ -113,9 +112,8 @@ static int find_row(const char *line)
 static void the_document_tells_the_sizes(void **state)
 {
     (void)state;
-    if (!IS_DEFAULT) {
+    if (!IS_DEFAULT)
         skip();
-    }
     FILE *file = fopen(GRRL_SOURCE_DIR "/docs/memory.md", "r");
     assert_non_null(file);
     char line[LINE_BYTES];
@@ -124,21 +122,20 @@ static void the_document_tells_the_sizes(void **state)
     while (fgets(line, sizeof line, file) != NULL) {
         int row = find_row(line);
         unsigned bytes;
-        if (row < 0) {
+        if (row < 0)
             continue;
-        }
-        ++told[row];
+        told[row]++;
         const char *cell = line + 2 + strlen(sizes[row].name) + 3;
         if (sscanf(cell, "%u |", &bytes) != 1 || bytes != sizes[row].bytes) {
             print_error("%s takes %zu bytes\n", sizes[row].name, sizes[row].bytes);
-            ++wrong;
+            wrong++;
         }
     }
     assert_int_equal(fclose(file), 0);
-    for (int i = 0; i < N_SIZES; ++i) {
+    for (int i = 0; i < N_SIZES; i++) {
         if (told[i] != 1) {
             print_error("| %s | %zu | has %u rows\n", sizes[i].name, sizes[i].bytes, told[i]);
-            ++wrong;
+            wrong++;
         }
     }
     assert_int_equal(wrong, 0);
@@ -150,7 +147,7 @@ static void every_public_struct_is_listed(void **state)
     const char *const headers[] = {"geometry",  "term",    "graph",      "signature", "match",
                                    "canonical", "random",  "perception", "grounding", "experience",
                                    "policy",    "learner", "trajectory", "context",   "case_base"};
-    for (size_t h = 0; h < sizeof headers / sizeof headers[0]; ++h) {
+    for (size_t h = 0; h < sizeof headers / sizeof headers[0]; h++) {
         char path[LINE_BYTES * 2];
         (void)snprintf(path, sizeof path, "%s/lib/include/grrl/%s.h", GRRL_SOURCE_DIR, headers[h]);
         FILE *file = fopen(path, "r");
@@ -160,14 +157,12 @@ static void every_public_struct_is_listed(void **state)
             char name[LINE_BYTES];
             char brace;
             if (sscanf(line, "struct %199s %c", name, &brace) != 2 || brace != '{' ||
-                strncmp(line, "struct ", 7) != 0) {
+                strncmp(line, "struct ", 7) != 0)
                 continue;
-            }
             char row[LINE_BYTES + 32];
             (void)snprintf(row, sizeof row, "| `struct %s` | ", name);
-            if (find_row(row) < 0) {
+            if (find_row(row) < 0)
                 fail_msg("struct %s is missing here and in docs/memory.md", name);
-            }
         }
         assert_int_equal(fclose(file), 0);
     }

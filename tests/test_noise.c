@@ -39,9 +39,8 @@ static float estimate(void)
 
 static void assert_within(float share, float sigma_m, float truth_m)
 {
-    if (!(fabsf(sigma_m / truth_m - 1.0f) < share)) {
+    if (!(fabsf(sigma_m / truth_m - 1.0f) < share))
         fail_msg("%g instead of %g", (double)sigma_m, (double)truth_m);
-    }
 }
 
 static void frames_at_rest_tell(void **state)
@@ -73,9 +72,8 @@ static void ids_that_change_hands_do_not_count(void **state)
     (void)state;
     start(21, 0.0007f);
     for (int f = 0; f < 100; f++) {
-        if (f % 20 == 10) {
+        if (f % 20 == 10)
             world_shuffle_ids(&world);
-        }
         observe(1);
     }
     assert_within(0.15f, estimate(), 0.0007f);

@@ -75,9 +75,8 @@ static void moving_as_one_is_one(void **state)
     (void)state;
     start(6, "RPR");
     float dq[WORLD_LINKS] = {0.0f};
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++)
         push(dq);
-    }
     assert_int_equal(grrl_perception_model(&perception)->n_bodies, 1);
 }
 
@@ -157,17 +156,15 @@ static void the_table_beside_the_object_is_no_link(void **state)
     world_init(&world, 21);
     world_add_chain(&world, "R", -0.1f, 0.0f);
     world.q[1] = 0.0f;
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++)
         (void)world_add_point(&world, -1, -0.14f + 0.06f * (float)i, 0.032f);
-    }
     world_shuffle_ids(&world);
     world_rest(&world, &perception, 10);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     const struct grrl_model *model = grrl_perception_model(&perception);
     int beside = 0;
-    for (int i = 0; i < model->n_features; i++) {
+    for (int i = 0; i < model->n_features; i++)
         beside += true_link(model->feature_id[i]) < 0 && model->feature_body[i] == 0;
-    }
     assert_true(beside >= config.min_features); /* or the test tells nothing */
     move_one(1, 0.4f);
     assert_int_equal(model->n_bodies, 2);
@@ -183,11 +180,10 @@ static void an_outlier_that_passes_does_not_end_a_track(void **state)
     uint32_t before = perception.counts.outliers;
     for (int f = 0; f < 12; f++) {
         struct grrl_frame frame = world_frame(&world);
-        if (f == 3) {
+        if (f == 3)
             frame.n--; /* the last is not seen */
-        } else if (f == 4) {
+        else if (f == 4)
             world.x[frame.n - 1] += 0.02f;
-        }
         grrl_perception_observe(&perception, &frame, true);
     }
     assert_int_equal(perception.counts.outliers - before, 0);
@@ -202,11 +198,9 @@ static uint32_t dropped_when_off(uint64_t seed, int off)
     for (int f = 0; f < 60; f++) {
         world.root[0].p.x += 0.001f;
         struct grrl_frame frame = world_frame(&world);
-        for (uint32_t i = 0; i < frame.n && f >= 27 && f < 36; i++) {
-            for (int point = 0; point < off; point++) { /* of the first link */
+        for (uint32_t i = 0; i < frame.n && f >= 27 && f < 36; i++)
+            for (int point = 0; point < off; point++) /* of the first link */
                 world.y[i] += frame.id[i] == world.id[point] ? 0.009f : 0.0f;
-            }
-        }
         grrl_perception_observe(&perception, &frame, true);
     }
     world_rest(&world, &perception, 10);
@@ -280,9 +274,8 @@ static void order_and_ids_of_points_do_not_matter(void **state)
             world.q[2] += pushing ? 0.012f / 120 : 0.0f;
             struct grrl_frame frame = world_frame(&world);
             if (variant == 1) { /* backwards, with other ids */
-                for (uint32_t i = 0; i < frame.n; i++) {
+                for (uint32_t i = 0; i < frame.n; i++)
                     world.seen[i] = 7000 - 3 * world.seen[i];
-                }
                 for (uint32_t i = 0; i < frame.n / 2; i++) {
                     uint32_t j = frame.n - 1 - i;
                     int32_t id = world.seen[i];
@@ -350,9 +343,8 @@ static void outliers_do_not_draw_the_means(void **state)
         start(seed, "RRR");
         world.missing = 0.2f;
         world.outliers = 0.02f;
-        for (int i = 0; i < 6; i++) {
+        for (int i = 0; i < 6; i++)
             move_one(1 + i % 3, i < 3 ? 0.35f : -0.3f);
-        }
         complete += is_the_chain(grrl_perception_model(&perception));
     }
     print_message("seeds 50 to 59: %d of 10 chains complete\n", complete);
@@ -361,9 +353,8 @@ static void outliers_do_not_draw_the_means(void **state)
 
 static void shift_link(int link, float by)
 {
-    for (int i = 0; i < world.n_points; i++) {
+    for (int i = 0; i < world.n_points; i++)
         world.local[i].y += world.body[i] == link ? by : 0.0f;
-    }
 }
 
 /* What few frames of a fast body tell does not count against a joint that all others tell. */
@@ -378,9 +369,8 @@ static void a_keyframe_beside_the_motion_does_not_hide_a_joint(void **state)
     for (int f = 0; f < 120; f++) {
         world.q[1] += 0.015f / 120;
         world.root[0].p.x += 0.1f / 120;
-        if (f == 60 || f == 66) {
+        if (f == 60 || f == 66)
             shift_link(1, f == 60 ? 0.009f : -0.009f);
-        }
         struct grrl_frame frame = world_frame(&world);
         grrl_perception_observe(&perception, &frame, true);
     }
@@ -440,9 +430,8 @@ static void keyframes_are_thinned_when_full(void **state)
 {
     (void)state;
     start(14, "RR");
-    for (int i = 0; i < 30; i++) {
+    for (int i = 0; i < 30; i++)
         move_one(1 + i % 2, i % 4 < 2 ? 0.3f : -0.3f);
-    }
     assert_int_equal(perception.counts.keyframes_high, GRRL_MAX_KEYFRAMES);
     assert_true(perception.counts.thinned > 0);
     assert_true(is_the_chain(grrl_perception_model(&perception)));

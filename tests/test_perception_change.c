@@ -125,9 +125,8 @@ static struct grrl_frame frame_with_hidden(int link, bool hidden)
     uint32_t n = 0;
     for (uint32_t i = 0; i < frame.n; i++) {
         int at = 0;
-        while (world.id[at] != frame.id[i]) {
+        while (world.id[at] != frame.id[i])
             at++;
-        }
         if (!hidden || world.body[at] != link || at % 2 == 0) {
             world.seen[n] = frame.id[i];
             world.x[n] = frame.x_m[i];
@@ -166,18 +165,16 @@ static bool is_in_the_right_body(const struct grrl_model *model, int32_t id)
 static int in_the_right_body(const struct grrl_model *model, int link)
 {
     int n = 0;
-    for (int i = 0; i < world.n_points; i++) {
+    for (int i = 0; i < world.n_points; i++)
         n += world.body[i] == link && is_in_the_right_body(model, world.id[i]);
-    }
     return n;
 }
 
 static int features_of(int link)
 {
     int n = 0;
-    for (int i = 0; i < world.n_points; i++) {
+    for (int i = 0; i < world.n_points; i++)
         n += world.body[i] == link;
-    }
     return n;
 }
 
@@ -264,9 +261,8 @@ static void show_to_both(const int32_t *alias, bool pushing)
         world.x[j] = x;
         world.y[j] = y;
     }
-    for (uint32_t i = 0; i < frame.n; i++) {
+    for (uint32_t i = 0; i < frame.n; i++)
         world.seen[i] = alias[world.seen[i]];
-    }
     grrl_perception_observe(&other, &frame, pushing);
 }
 
@@ -298,9 +294,8 @@ static void order_of_features_and_bodies_does_not_matter(void **state)
         world_init(&world, seed);
         world_add_chain(&world, chains[seed % 4], -0.2f, 0.0f);
         world_add_background(&world, 15);
-        for (int i = 0; i < world.n_points; i++) {
+        for (int i = 0; i < world.n_points; i++)
             alias[i] = 100000 - 7 * ((i * 37 + (int)seed) % 1009);
-        }
         for (int push_no = 0; push_no <= 8; push_no++) {
             int link = 1 + (int)grrl_random_below(&world.random, (uint32_t)world.n_links - 1);
             float size = world.joint[link] == 'R' ? 0.3f : 0.012f;
@@ -310,9 +305,8 @@ static void order_of_features_and_bodies_does_not_matter(void **state)
                 world.root[0].p.x += 0.0001f;
                 show_to_both(alias, true);
             }
-            for (int f = 0; f < 10; f++) {
+            for (int f = 0; f < 10; f++)
                 show_to_both(alias, false);
-            }
             assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
             assert_int_equal(grrl_perception_update(&other), GRRL_OK);
             states++;

@@ -94,9 +94,8 @@ static void start_parallelogram(uint64_t seed, float noise_m)
 static int prismatic_joints(const struct grrl_model *model)
 {
     int n = 0;
-    for (int i = 0; i < model->n_joints; i++) {
+    for (int i = 0; i < model->n_joints; i++)
         n += model->joint[i].type == GRRL_PRISMATIC;
-    }
     return n;
 }
 
@@ -136,9 +135,8 @@ static void crossing_links_are_parted_right(void **state)
         world.length_m = 0.18f;
         world_add_chain(&world, "R", -0.2f, 0.0f);
         world.anchor_m[1] = 0.0f; /* both at their middles */
-        for (int i = 0; i < world.n_points; i++) {
+        for (int i = 0; i < world.n_points; i++)
             world.local[i].x -= world.body[i] == 1 ? world.length_m / 2 : 0.0f;
-        }
         world.q[1] = world_uniform(&world, 0.4f, 1.2f);
         world_shuffle_ids(&world);
         world_rest(&world, &perception, 10);

@@ -40,11 +40,9 @@ static int set_up(void **state)
     grrl_policy_config_default(&f.config);
     grrl_random_init(&f.random, SEED, 1);
     f.recall.n_links = LINKS;
-    for (int link = 0; link < GRRL_MAX_LINKS; ++link) {
-        for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (int link = 0; link < GRRL_MAX_LINKS; link++)
+        for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
             f.recall.entry[link][direction].experience = GRRL_NO_EXPERIENCE;
-        }
-    }
     return 0;
 }
 
@@ -60,11 +58,11 @@ static void check_uniform(const unsigned *count, uint32_t wanted)
 {
     unsigned n = 0;
     unsigned sum = 0;
-    for (unsigned i = 0; i < ACTIONS; ++i) {
+    for (unsigned i = 0; i < ACTIONS; i++) {
         n += wanted >> i & 1u;
         sum += count[i];
     }
-    for (unsigned i = 0; i < ACTIONS; ++i) {
+    for (unsigned i = 0; i < ACTIONS; i++) {
         if ((wanted >> i & 1u) == 0) {
             assert_int_equal(count[i], 0);
             continue;
@@ -81,9 +79,9 @@ static void the_random_policy_is_uniform(void **state)
     f.config.kind = GRRL_POLICY_RANDOM;
     know(3, 100.0f, 0.0f, 5);
     unsigned count[ACTIONS] = {0};
-    for (int i = 0; i < DRAWS; ++i) {
+    for (int i = 0; i < DRAWS; i++) {
         struct grrl_choice choice;
-        ++count[choose(&choice)];
+        count[choose(&choice)]++;
         assert_int_equal(choice.reason, GRRL_CHOICE_RANDOM);
     }
     check_uniform(count, (1u << ACTIONS) - 1u);
@@ -94,16 +92,16 @@ static void exploration_follows_phi(void **state)
     (void)state;
     print_message("seed %llu\n", (unsigned long long)SEED);
     uint32_t known = 0;
-    for (unsigned n = 0; n <= ACTIONS; ++n) {
+    for (unsigned n = 0; n <= ACTIONS; n++) {
         unsigned count[ACTIONS] = {0};
         unsigned explored = 0;
-        for (int i = 0; i < DRAWS; ++i) {
+        for (int i = 0; i < DRAWS; i++) {
             struct grrl_choice choice;
             unsigned action = choose(&choice);
             assert_true(fabsf(choice.phi - (float)n / ACTIONS) < 1e-6f);
             if (choice.reason == GRRL_CHOICE_EXPLORE) {
-                ++explored;
-                ++count[action];
+                explored++;
+                count[action]++;
                 assert_int_equal(choice.from.experience, GRRL_NO_EXPERIENCE);
             } else {
                 assert_int_equal(choice.reason, GRRL_CHOICE_EXPLOIT);
@@ -112,9 +110,8 @@ static void exploration_follows_phi(void **state)
         }
         double share = n < ACTIONS ? exp(-2.0 * n / ACTIONS) : 0.0;
         assert_true(fabs(explored - share * DRAWS) <= 5.0 * sqrt(DRAWS * share * (1.0 - share)));
-        if (explored > 0) {
+        if (explored > 0)
             check_uniform(count, ((1u << ACTIONS) - 1u) & ~known);
-        }
         if (n < ACTIONS) {
             unsigned next = n * 5 % ACTIONS;
             know(next, (float)n, 0.0f, 1);
@@ -126,9 +123,8 @@ static void exploration_follows_phi(void **state)
 static void the_highest_upper_bound_wins(void **state)
 {
     (void)state;
-    for (unsigned i = 0; i < ACTIONS; ++i) {
+    for (unsigned i = 0; i < ACTIONS; i++)
         know(i, 0.0f, 0.0f, 100);
-    }
     know(4, 1.0f, 0.0f, 100);
     know(7, 0.9f, 0.0f, 1); /* 0.9 + 0.25 beats 1 + 0.25 * 0.1 / 10 */
     struct grrl_choice choice;
@@ -140,9 +136,8 @@ static void the_highest_upper_bound_wins(void **state)
                 fabsf(choice.lower - 0.65f) < 1e-6f && choice.phi == 1.0f);
     f.config.z = 0.0f;
     assert_int_equal(choose(&choice), 4);
-    for (unsigned i = 0; i < ACTIONS; ++i) {
+    for (unsigned i = 0; i < ACTIONS; i++)
         know(i, -3.0f - (float)i, 0.0f, 1); /* the best of bad ones */
-    }
     assert_int_equal(choose(&choice), 0);
 }
 
@@ -150,13 +145,12 @@ static void ties_are_broken_at_random(void **state)
 {
     (void)state;
     print_message("seed %llu\n", (unsigned long long)SEED);
-    for (unsigned i = 0; i < ACTIONS; ++i) {
+    for (unsigned i = 0; i < ACTIONS; i++)
         know(i, i % 3 == 0 ? 2.0f : 1.0f, 0.0f, 4);
-    }
     unsigned count[ACTIONS] = {0};
-    for (int i = 0; i < DRAWS; ++i) {
+    for (int i = 0; i < DRAWS; i++) {
         struct grrl_choice choice;
-        ++count[choose(&choice)];
+        count[choose(&choice)]++;
     }
     check_uniform(count, 0x249);
 }
@@ -212,8 +206,8 @@ static void a_parameter_out_of_range_is_named(void **state)
                   {"z", &c->z, {-0.1f, 1e9f, INFINITY, NAN}},
                   {"prior_sd", &c->prior_sd, {-0.1f, 1e9f, INFINITY, NAN}},
                   {"trial_reward", &c->trial_reward, {-0.1f, 1e9f, INFINITY, NAN}}};
-    for (unsigned i = 0; i < sizeof floats / sizeof floats[0]; ++i) {
-        for (unsigned k = 0; k < 4; ++k) {
+    for (unsigned i = 0; i < sizeof floats / sizeof floats[0]; i++) {
+        for (unsigned k = 0; k < 4; k++) {
             *floats[i].value = floats[i].wrong[k];
             check_refused(floats[i].name);
         }

@@ -35,9 +35,8 @@ static void fit_body(struct grrl_perception *p, uint8_t body)
 
 static void fit_all(struct grrl_perception *p)
 {
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
+    for (uint8_t b = 0; b < p->n_bodies; b++)
         fit_body(p, b);
-    }
 }
 
 /* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
@@ -76,21 +75,17 @@ static bool moves(const struct grrl_perception *p, uint16_t slot)
 static bool body_has_moved(const struct grrl_perception *p, uint8_t body)
 {
     int balance = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body)
             balance += p->has_moved[i] ? 1 : -1;
-        }
-    }
     return balance > 0;
 }
 
 static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
 {
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body && p->blob_of[i] != 0) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body && p->blob_of[i] != 0)
             return p->blob_of[i];
-        }
-    }
     return 0;
 }
 
@@ -115,15 +110,13 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
         float saved = 0.0f;
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f) || !(poses[k].mass > 0.0f)) {
+        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f) || !(poses[k].mass > 0.0f))
             continue;
-        }
         for (uint16_t i = 0; i < n; i++) {
             uint16_t slot = slots[i];
             uint8_t w = p->keyframe[k].weight[slot];
-            if (w == 0) {
+            if (w == 0)
                 continue;
-            }
             const struct grrl_perception_pose *own = body_of[slot] == a ? pa : pb;
             float scale = 1.0f / grrl_keyframe_variance(p, w);
             float together = scale * grrl_distance2(p->keyframe[k].point[slot],
@@ -140,11 +133,9 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
 /* Takes a body out of the list; its features must be elsewhere. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] > body && p->body_of[i] < p->n_bodies) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] > body && p->body_of[i] < p->n_bodies)
             p->body_of[i]--;
-        }
-    }
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         memmove(&p->pose[k][body], &p->pose[k][body + 1],
                 (size_t)(p->n_bodies - body - 1) * sizeof p->pose[0][0]);
@@ -158,20 +149,17 @@ static uint16_t slots_of_both(const struct grrl_perception *p, uint8_t a, uint8_
                               uint16_t *slots)
 {
     uint16_t n = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == a || p->body_of[i] == b) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == a || p->body_of[i] == b)
             slots[n++] = i;
-        }
-    }
     return n;
 }
 
 /* Whether two bodies may be one: they moved apart in no keyframe. */
 static float merge_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    if (!may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
+    if (!may_share(p, blob_of_body(p, a), body_has_moved(p, a), b))
         return NEVER;
-    }
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t n = slots_of_both(p, a, b, slots);
     return apart_evidence(p, slots, n, p->body_of, a, b);
@@ -197,9 +185,8 @@ static struct range range_between(const struct grrl_perception *p, uint8_t a, ui
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!p->keyframe[k].at_rest || !(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
+        if (!p->keyframe[k].at_rest || !(pa->mass > 0.0f) || !(pb->mass > 0.0f))
             continue;
-        }
         struct grrl_pose r = {grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p)),
                               pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s,
                               pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c};
@@ -257,9 +244,8 @@ static bool may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     struct range range = range_between(p, a, b);
     bool far = is_far(p, &range);
-    if (far && !is_less(p, &range, LITTLE * p->config.slack)) {
+    if (far && !is_less(p, &range, LITTLE * p->config.slack))
         return false; /* beyond doubt; a fit of both together costs much more than this */
-    }
     float evidence = merge_evidence(p, a, b);
     return evidence < MERGE_EVIDENCE * p->config.slack || (evidence < NEVER && !far);
 }
@@ -268,14 +254,11 @@ static void merge_bodies(struct grrl_perception *p)
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (!may_merge(p, a, b)) {
+            if (!may_merge(p, a, b))
                 continue;
-            }
-            for (uint16_t i = 0; i < p->n_slots; i++) {
-                if (p->body_of[i] == b) {
+            for (uint16_t i = 0; i < p->n_slots; i++)
+                if (p->body_of[i] == b)
                     p->body_of[i] = a;
-                }
-            }
             remove_body(p, b);
             fit_body(p, a);
             b = a; /* the merged body may now fit one that was passed over */
@@ -314,12 +297,10 @@ static bool reassign_once(struct grrl_perception *p)
             struct grrl_vec2 local = p->shape[i];
             uint16_t n;
             if (b != own && (!may_share(p, p->blob_of[i], p->has_moved[i], b) ||
-                             !grrl_rigid_place(p, i, &p->pose[0][b], GRRL_MAX_LINKS, &local))) {
+                             !grrl_rigid_place(p, i, &p->pose[0][b], GRRL_MAX_LINKS, &local)))
                 continue;
-            }
-            if (own == GRRL_FEATURE_BACKGROUND && p->blob_of[i] == 0) {
+            if (own == GRRL_FEATURE_BACKGROUND && p->blob_of[i] == 0)
                 break; /* decided below: the background moves with nothing */
-            }
             float cost =
                 grrl_rigid_cost(p, i, local, &p->pose[0][b], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
             float excess = cost - cost_limit(p, n) - (b == own ? 2.0f : 0.0f);
@@ -328,18 +309,15 @@ static bool reassign_once(struct grrl_perception *p)
                 best_excess = excess;
             }
         }
-        if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, i)) {
+        if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, i))
             best = own;
-        }
-        if (!p->has_moved[i] && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE)) {
+        if (!p->has_moved[i] && (p->blob_of[i] == 0 || best == GRRL_FEATURE_NONE))
             best = GRRL_FEATURE_BACKGROUND;
-        }
         changed = changed || p->body_of[i] != best;
         p->body_of[i] = best;
     }
-    if (changed) {
+    if (changed)
         fit_all(p);
-    }
     return changed;
 }
 
@@ -357,9 +335,8 @@ static void dissolve_small(struct grrl_perception *p)
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = grrl_body_slots(p, b, slots);
         if (n < p->config.min_features) {
-            for (uint16_t i = 0; i < n; i++) {
+            for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-            }
             remove_body(p, b--);
         }
     }
@@ -370,9 +347,8 @@ static void dissolve_small(struct grrl_perception *p)
 static void give_back_the_table(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
-        if (body_has_moved(p, b) || grrl_hangs_together(p, b)) {
+        if (body_has_moved(p, b) || grrl_hangs_together(p, b))
             continue;
-        }
         for (uint16_t i = 0; i < p->n_slots; i++) {
             if (p->body_of[i] == b) {
                 p->body_of[i] = GRRL_FEATURE_BACKGROUND;
@@ -401,9 +377,8 @@ static bool fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint1
         if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
             grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
             grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, GRRL_COST_CAP, &n) <=
-                allowed) {
+                allowed)
             return true;
-        }
     }
     return false;
 }
@@ -416,13 +391,11 @@ static void dissolve_redundant(struct grrl_perception *p)
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = grrl_body_slots(p, b, slots);
         uint16_t unique = 0;
-        for (uint16_t i = 0; i < n && unique < p->config.min_features; i++) {
+        for (uint16_t i = 0; i < n && unique < p->config.min_features; i++)
             unique = (uint16_t)(unique + (fits_elsewhere(p, slots[i], n) ? 0 : 1));
-        }
         if (unique < p->config.min_features) {
-            for (uint16_t i = 0; i < n; i++) {
+            for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-            }
             remove_body(p, b--);
             reassign(p);
         }
@@ -433,9 +406,8 @@ static void dissolve_redundant(struct grrl_perception *p)
 static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     struct range range = range_between(p, a, b);
-    if (!is_less(p, &range, LITTLE) || !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b)) {
+    if (!is_less(p, &range, LITTLE) || !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b))
         return;
-    }
     struct grrl_together together;
     uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part;
@@ -450,30 +422,24 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
         n_part = n_crossed;
         memcpy(part, crossed, n_part * sizeof *part);
     }
-    if (gain < CUT_GAIN * p->config.slack) {
+    if (gain < CUT_GAIN * p->config.slack)
         return;
-    }
     int of_a = 0; /* the part goes on as the body most of it was, so that numbers stay */
-    for (uint16_t i = 0; i < n_part; i++) {
+    for (uint16_t i = 0; i < n_part; i++)
         of_a += p->body_of[part[i]] == a ? 1 : -1;
-    }
-    for (uint16_t i = 0; i < together.n; i++) {
+    for (uint16_t i = 0; i < together.n; i++)
         p->body_of[together.slot[i]] = of_a > 0 ? b : a;
-    }
-    for (uint16_t i = 0; i < n_part; i++) {
+    for (uint16_t i = 0; i < n_part; i++)
         p->body_of[part[i]] = of_a > 0 ? a : b;
-    }
     fit_body(p, a);
     fit_body(p, b);
 }
 
 static void cut_all_anew(struct grrl_perception *p)
 {
-    for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
-        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
+    for (uint8_t a = 0; a + 1 < p->n_bodies; a++)
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++)
             cut_anew(p, a, b);
-        }
-    }
 }
 
 /* Splits body `body` if a part of it moved apart from the rest. */
@@ -483,19 +449,15 @@ static void split_body(struct grrl_perception *p, uint8_t body)
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
     uint16_t n = grrl_body_slots(p, body, slots);
-    if (n < p->config.min_features || grrl_misfit(p, slots, n, body, score) < SPLIT_SIGMAS) {
+    if (n < p->config.min_features || grrl_misfit(p, slots, n, body, score) < SPLIT_SIGMAS)
         return;
-    }
     uint16_t n_members = grrl_consensus(p, slots, n, score, members);
-    if (n_members < p->config.min_features || n_members == n) {
+    if (n_members < p->config.min_features || n_members == n)
         return;
-    }
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-    }
-    for (uint16_t i = 0; i < n_members; i++) {
+    for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
-    }
     fit_body(p, body);
 }
 
@@ -507,25 +469,20 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
     uint16_t n = grrl_body_slots(p, GRRL_FEATURE_NONE, slots);
-    if (n < p->config.min_features || p->n_bodies == GRRL_MAX_LINKS) {
+    if (n < p->config.min_features || p->n_bodies == GRRL_MAX_LINKS)
         return false;
-    }
     uint8_t body = p->n_bodies;
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = body;
-    }
     fit_body(p, body);
     (void)grrl_misfit(p, slots, n, body, score);
     uint16_t n_members = grrl_consensus(p, slots, n, score, members);
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-    }
-    if (n_members < p->config.min_features) {
+    if (n_members < p->config.min_features)
         return false;
-    }
-    for (uint16_t i = 0; i < n_members; i++) {
+    for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
-    }
     grrl_body_add(p);
     fit_body(p, body);
     return true;
@@ -557,19 +514,15 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
 
 void grrl_bodies_update(struct grrl_perception *p)
 {
-    if (p->n_bodies == 0) {
+    if (p->n_bodies == 0)
         grrl_first_look(p);
-    }
-    for (uint16_t i = 0; i < p->n_slots; i++) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = moves(p, i);
-    }
     fit_all(p);
-    if (grrl_drop_outliers(p)) {
+    if (grrl_drop_outliers(p))
         fit_all(p);
-    }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
+    for (uint8_t b = 0; b < p->n_bodies; b++)
         split_body(p, b);
-    }
     while (adopt_strays(p)) {
     }
     reassign(p);

@@ -360,7 +360,7 @@ static void insert_component(const struct search *search, uint8_t *order, uint8_
     memmove(order + at + search->n, order + at, (size_t)(*n_placed - at));
     memcpy(order + at, search->best.order, search->n);
     sizes[i] = search->n;
-    ++*n_components;
+    (*n_components)++;
     *n_placed = (uint8_t)(*n_placed + search->n);
 }
 

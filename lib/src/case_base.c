@@ -43,11 +43,10 @@ enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, c
         {"cases.memory", config->memory >= 1},
         {"cases.parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
     };
-    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; ++i) {
+    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         if (!checks[i].fine) {
-            if (field != NULL) {
+            if (field != NULL)
                 *field = checks[i].name;
-            }
             return GRRL_ERR_ARGUMENT;
         }
     }
@@ -100,13 +99,11 @@ static void join_rewards(const struct grrl_case_config *config, float kept, stru
 
 void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config)
 {
-    if (base->n == 0) {
+    if (base->n == 0)
         return;
-    }
     float kept = base->log_odds < 0.0f ? 2.0f * trust(base) : 1.0f;
-    for (uint32_t i = 0; i < base->n; ++i) {
+    for (uint32_t i = 0; i < base->n; i++)
         join_rewards(config, kept, &base->cases[i]);
-    }
     base->log_odds = config->confidence;
 }
 
@@ -114,11 +111,9 @@ static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_
                                 uint16_t parts)
 {
     uint8_t n = 0;
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
-        if (((uint32_t)parts >> i & 1u) != 0 && a->part[i] != b->part[i]) {
-            ++n;
-        }
-    }
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        if (((uint32_t)parts >> i & 1u) != 0 && a->part[i] != b->part[i])
+            n++;
     return n;
 }
 
@@ -136,14 +131,13 @@ static void gather(const struct grrl_case_base *base, const struct grrl_case_con
                    struct grrl_estimate *estimate)
 {
     float weight_of[GRRL_CONTEXT_PARTS + 1] = {1.0f};
-    for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; ++i) {
+    for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; i++)
         weight_of[i] = weight_of[i - 1] * config->mismatch;
-    }
     float trusted = trust(base);
     float closest_weight = 0.0f;
     *evidence = (struct evidence){.older = 0.0f};
     *estimate = (struct grrl_estimate){.closest = GRRL_NO_CASE, .mismatches = UINT8_MAX};
-    for (uint32_t i = 0; i < base->n; ++i) {
+    for (uint32_t i = 0; i < base->n; i++) {
         const struct grrl_case *met = &base->cases[i];
         uint8_t mismatches = count_mismatches(&met->context, context, config->parts);
         float older = (float)at_most(met->n, config->memory);
@@ -212,19 +206,17 @@ static void weigh(struct grrl_case_base *base, const struct grrl_case_config *co
 static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_context *context)
 {
     uint32_t oldest = 0;
-    for (uint32_t i = 0; i < base->n; ++i) {
-        if (memcmp(&base->cases[i].context, context, sizeof *context) == 0) {
+    for (uint32_t i = 0; i < base->n; i++) {
+        if (memcmp(&base->cases[i].context, context, sizeof *context) == 0)
             return i;
-        }
-        if (base->cases[i].used_at < base->cases[oldest].used_at) {
+        if (base->cases[i].used_at < base->cases[oldest].used_at)
             oldest = i;
-        }
     }
     if (base->n < base->capacity) {
         oldest = base->n++;
         base->high_water = base->n > base->high_water ? base->n : base->high_water;
     } else {
-        ++base->evictions;
+        base->evictions++;
     }
     base->cases[oldest] = (struct grrl_case){.context = *context};
     return oldest;
@@ -234,9 +226,8 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
                           const struct grrl_context *context, float reward)
 {
     weigh(base, config, context, reward);
-    if (base->capacity == 0) {
+    if (base->capacity == 0)
         return GRRL_NO_CASE;
-    }
     uint32_t index = find_or_add(base, context);
     struct grrl_case *met = &base->cases[index];
     met->n_new = (uint8_t)at_most(met->n_new + 1u, config->memory);

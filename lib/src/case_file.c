@@ -34,11 +34,10 @@ enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
         grrl_record_put_float(&record, base->log_odds);
         status = grrl_record_write(&record);
     }
-    for (uint32_t i = 0; i < base->n && status == GRRL_OK; ++i) {
+    for (uint32_t i = 0; i < base->n && status == GRRL_OK; i++) {
         const struct grrl_case *met = &base->cases[i];
-        for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; ++part) {
+        for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
             grrl_record_put(&record, met->context.part[part], 1);
-        }
         grrl_record_put(&record, met->n, 1);
         grrl_record_put(&record, met->n_new, 1);
         grrl_record_put(&record, met->used_at, 4);
@@ -52,27 +51,22 @@ enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
 static enum grrl_status read_header(const struct grrl_case_base *base, struct grrl_record *record,
                                     uint32_t *n, uint32_t *clock)
 {
-    if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
-    if (memcmp(record->bytes, magic, sizeof magic) != 0) {
+    if (memcmp(record->bytes, magic, sizeof magic) != 0)
         return GRRL_ERR_FORMAT;
-    }
     record->n = sizeof magic;
     bool known = grrl_record_take(record, 2) == FILE_VERSION;
     known = grrl_record_take(record, 1) == GRRL_CONTEXT_PARTS && known;
     bool fine = grrl_record_take(record, 1) == 0;
     *n = (uint32_t)grrl_record_take(record, 4);
     *clock = (uint32_t)grrl_record_take(record, 4);
-    if (grrl_record_check(record, HEADER_BYTES) != GRRL_OK) {
+    if (grrl_record_check(record, HEADER_BYTES) != GRRL_OK)
         return GRRL_ERR_CORRUPT;
-    }
-    if (!known) {
+    if (!known)
         return GRRL_ERR_VERSION;
-    }
-    if (*n > base->capacity) {
+    if (*n > base->capacity)
         return GRRL_ERR_FULL;
-    }
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
@@ -84,9 +78,8 @@ static bool is_within_most(float x)
 
 static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odds)
 {
-    if (grrl_record_read(record, LOG_ODDS_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, LOG_ODDS_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
     *log_odds = grrl_record_take_float(record);
     bool fine = grrl_record_check(record, LOG_ODDS_BYTES) == GRRL_OK && is_within_most(*log_odds);
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
@@ -94,36 +87,30 @@ static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odd
 
 static bool is_context(const struct grrl_context *context)
 {
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; ++i) {
-        if (context->part[i] > grrl_context_most[i]) {
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        if (context->part[i] > grrl_context_most[i])
             return false;
-        }
-    }
     return true;
 }
 
 /* Whether a case could have been saved behind those read so far: each context and time is once. */
 static bool is_new(const struct grrl_case_base *base, const struct grrl_case *met)
 {
-    for (uint32_t i = 0; i < base->n; ++i) {
+    for (uint32_t i = 0; i < base->n; i++)
         if (memcmp(&base->cases[i].context, &met->context, sizeof met->context) == 0 ||
-            base->cases[i].used_at == met->used_at) {
+            base->cases[i].used_at == met->used_at)
             return false;
-        }
-    }
     return true;
 }
 
 static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_record *record,
                                   uint32_t clock)
 {
-    if (grrl_record_read(record, CASE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, CASE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
     struct grrl_case met = {.n = 0};
-    for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; ++part) {
+    for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
         met.context.part[part] = (uint8_t)grrl_record_take(record, 1);
-    }
     met.n = (uint8_t)grrl_record_take(record, 1);
     met.n_new = (uint8_t)grrl_record_take(record, 1);
     met.used_at = (uint32_t)grrl_record_take(record, 4);
@@ -132,9 +119,8 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
     bool fine = grrl_record_check(record, CASE_BYTES) == GRRL_OK && is_context(&met.context) &&
                 (met.n > 0 || met.n_new > 0) && met.used_at <= clock && is_within_most(met.value) &&
                 is_within_most(met.value_new) && is_new(base, &met);
-    if (!fine) {
+    if (!fine)
         return GRRL_ERR_CORRUPT;
-    }
     base->cases[base->n++] = met;
     return GRRL_OK;
 }
@@ -148,12 +134,10 @@ enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
     grrl_cases_clear(base);
     enum grrl_status status = read_header(base, &record, &n, &clock);
     float log_odds = 0.0f;
-    if (status == GRRL_OK) {
+    if (status == GRRL_OK)
         status = read_log_odds(&record, &log_odds);
-    }
-    for (uint32_t i = 0; i < n && status == GRRL_OK; ++i) {
+    for (uint32_t i = 0; i < n && status == GRRL_OK; i++)
         status = read_case(base, &record, clock);
-    }
     *lost = 0;
     if (status != GRRL_OK && status != GRRL_ERR_IO) {
         grrl_cases_clear(base);
@@ -170,8 +154,7 @@ enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_
 {
     uint32_t lost;
     enum grrl_status status = grrl_cases_load_torn(base, io, &lost);
-    if (status == GRRL_ERR_IO) {
+    if (status == GRRL_ERR_IO)
         grrl_cases_clear(base);
-    }
     return status;
 }

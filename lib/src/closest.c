@@ -28,9 +28,8 @@ static void sink(struct grrl_closest *closest, unsigned n, unsigned at)
 {
     for (unsigned child = 2 * at + 1; child < n; child = 2 * at + 1) {
         child += child + 1 < n && is_farther(closest, child + 1, child);
-        if (!is_farther(closest, child, at)) {
+        if (!is_farther(closest, child, at))
             return;
-        }
         exchange(closest, at, child);
         at = child;
     }
@@ -38,9 +37,8 @@ static void sink(struct grrl_closest *closest, unsigned n, unsigned at)
 
 static void make_heap(struct grrl_closest *closest)
 {
-    for (unsigned at = closest->n / 2; at-- > 0;) {
+    for (unsigned at = closest->n / 2; at-- > 0;)
         sink(closest, closest->n, at);
-    }
 }
 
 void grrl_closest_add(struct grrl_closest *closest, unsigned distance, uint32_t state)
@@ -49,11 +47,10 @@ void grrl_closest_add(struct grrl_closest *closest, unsigned distance, uint32_t 
     const unsigned at = full ? 0 : closest->n++;
     closest->state[at] = state;
     closest->distance[at] = (uint8_t)distance;
-    if (full) {
+    if (full)
         sink(closest, closest->n, 0);
-    } else if (closest->n == closest->most) {
+    else if (closest->n == closest->most)
         make_heap(closest);
-    }
 }
 
 void grrl_closest_sort(struct grrl_closest *closest)

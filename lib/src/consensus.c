@@ -68,11 +68,9 @@ static struct choice_of_keyframes telling_keyframes(const struct grrl_perception
     }
     while (chosen.n < SPLIT_KEYFRAMES && chosen.n < p->n_keyframes) {
         uint8_t best = GRRL_MAX_KEYFRAMES;
-        for (uint8_t k = 0; k < p->n_keyframes; k++) {
-            if (!taken[k] && (best == GRRL_MAX_KEYFRAMES || score[k] > score[best])) {
+        for (uint8_t k = 0; k < p->n_keyframes; k++)
+            if (!taken[k] && (best == GRRL_MAX_KEYFRAMES || score[k] > score[best]))
                 best = k;
-            }
-        }
         taken[best] = true;
         chosen.k[chosen.n++] = best;
     }
@@ -103,9 +101,8 @@ static bool displacement_of(const struct grrl_perception *p, const uint16_t *slo
             seen++;
         }
     }
-    if (seen < 2) {
+    if (seen < 2)
         return false;
-    }
     d->mass = (float)seen;
     d->from = grrl_vec2_scale(d->from, 1.0f / d->mass);
     d->to = grrl_vec2_scale(d->to, 1.0f / d->mass);
@@ -141,15 +138,13 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
-        if (k == k0 || !displacement_of(p, group, n_group, k0, k, &d)) {
+        if (k == k0 || !displacement_of(p, group, n_group, k0, k, &d))
             continue;
-        }
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w0 = p->keyframe[k0].weight[slots[i]];
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
-            if (w0 == 0 || w1 == 0) {
+            if (w0 == 0 || w1 == 0)
                 continue;
-            }
             struct grrl_vec2 x = grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from);
             struct grrl_vec2 y = grrl_vec2_sub(p->keyframe[k].point[slots[i]], d.to);
             struct grrl_vec2 r = {y.x - (d.c * x.x - d.s * x.y), y.y - (d.s * x.x + d.c * x.y)};
@@ -161,11 +156,9 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
         }
     }
     uint16_t n_members = 0;
-    for (uint16_t i = 0; i < n; i++) {
-        if (count[i] > 0.0f && cost[i] <= INLIER_COST * count[i]) {
+    for (uint16_t i = 0; i < n; i++)
+        if (count[i] > 0.0f && cost[i] <= INLIER_COST * count[i])
             members[n_members++] = slots[i];
-        }
-    }
     return n_members;
 }
 
@@ -177,9 +170,8 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
     uint16_t n_group = 1;
     group[0] = seed;
     for (uint16_t i = 0; i < n; i++) {
-        if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0) {
+        if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0)
             continue;
-        }
         float d = grrl_distance2(p->keyframe[k0].point[seed], p->keyframe[k0].point[slots[i]]);
         uint16_t at = n_group;
         while (at > 1 && d2[at - 2] > d) {
@@ -221,9 +213,8 @@ uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, 
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
         uint16_t group[GRRL_MAX_FEATURES];
         uint16_t grown[GRRL_MAX_FEATURES];
-        if (p->keyframe[k0].weight[slots[i]] == 0) {
+        if (p->keyframe[k0].weight[slots[i]] == 0)
             continue;
-        }
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
         for (int round = 0; round < 3 && n_group >= 3; round++) {
             uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);

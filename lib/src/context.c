@@ -35,9 +35,8 @@ static uint8_t at_most(unsigned x, unsigned most)
 static uint8_t octave(float length_m, float large_m)
 {
     uint8_t octave = 0;
-    for (float limit = 0.6f * large_m; octave < MOST_OCTAVE && length_m >= limit; limit *= 2.0f) {
-        ++octave;
-    }
+    for (float limit = 0.6f * large_m; octave < MOST_OCTAVE && length_m >= limit; limit *= 2.0f)
+        octave++;
     return octave;
 }
 
@@ -50,51 +49,42 @@ static void count_joints(const struct grrl_model *model, uint8_t body,
                          uint8_t count[GRRL_JOINT_TYPES])
 {
     memset(count, 0, GRRL_JOINT_TYPES);
-    for (uint8_t j = 0; j < model->n_joints; ++j) {
+    for (uint8_t j = 0; j < model->n_joints; j++)
         count[model->joint[j].type] += joins(&model->joint[j], body);
-    }
 }
 
 static struct grrl_attempts *find(struct grrl_trial_attempts *attempts, uint16_t number)
 {
-    for (unsigned i = 0; i < GRRL_MAX_LINKS; ++i) {
-        if (attempts->link[i].number == number) {
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (attempts->link[i].number == number)
             return &attempts->link[i];
-        }
-    }
     return NULL;
 }
 
 static bool is_seen(const struct grrl_model *model, uint16_t number)
 {
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
-        if (model->body[i].number == number) {
+    for (uint8_t i = 0; i < model->n_bodies; i++)
+        if (model->body[i].number == number)
             return true;
-        }
-    }
     return false;
 }
 
 void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
                         float large_m)
 {
-    for (unsigned i = 0; i < GRRL_MAX_LINKS; ++i) {
-        if (!is_seen(model, attempts->link[i].number)) {
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (!is_seen(model, attempts->link[i].number))
             memset(&attempts->link[i], 0, sizeof attempts->link[i]);
-        }
-    }
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
         struct grrl_attempts now = {.number = model->body[i].number,
                                     .length = octave(model->body[i].length_m, large_m)};
         count_joints(model, i, now.joints);
         struct grrl_attempts *link = find(attempts, now.number);
-        if (link == NULL) {
+        if (link == NULL)
             link = find(attempts, 0); /* one is free: at most GRRL_MAX_LINKS bodies are seen */
-        }
         if (link->number != now.number || link->length != now.length ||
-            memcmp(link->joints, now.joints, sizeof now.joints) != 0) {
+            memcmp(link->joints, now.joints, sizeof now.joints) != 0)
             *link = now;
-        }
     }
 }
 
@@ -102,9 +92,8 @@ void grrl_attempts_add(struct grrl_trial_attempts *attempts, const struct grrl_m
                        uint8_t body, uint8_t direction)
 {
     struct grrl_attempts *link = find(attempts, model->body[body].number);
-    if (link != NULL && link->tried[direction] < UINT8_MAX) {
-        ++link->tried[direction];
-    }
+    if (link != NULL && link->tried[direction] < UINT8_MAX)
+        link->tried[direction]++;
 }
 
 /* What the directions of one body have in common. */
@@ -116,10 +105,9 @@ static void describe(const struct grrl_model *model, float large_m, uint8_t body
     unsigned longer = 0;
     uint8_t longest = 0;
     count_joints(model, body, joints);
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++)
         longer += model->body[i].length_m > LONGER * self->length_m;
-    }
-    for (uint8_t j = 0; j < model->n_joints; ++j) {
+    for (uint8_t j = 0; j < model->n_joints; j++) {
         const struct grrl_joint *joint = &model->joint[j];
         if (joins(joint, body)) {
             uint8_t other = joint->a == body ? joint->b : joint->a;
@@ -140,11 +128,10 @@ static uint8_t neighbours_along(const struct grrl_model *model, uint8_t body,
                                 struct grrl_vec2 direction)
 {
     unsigned where = 0;
-    for (uint8_t j = 0; j < model->n_joints; ++j) {
+    for (uint8_t j = 0; j < model->n_joints; j++) {
         const struct grrl_joint *joint = &model->joint[j];
-        if (!joins(joint, body)) {
+        if (!joins(joint, body))
             continue;
-        }
         uint8_t other = joint->a == body ? joint->b : joint->a;
         struct grrl_vec2 arm =
             grrl_vec2_sub(model->body[other].centroid_m, model->body[body].centroid_m);
@@ -167,22 +154,18 @@ enum grrl_status grrl_context_of(const struct grrl_trial_attempts *attempts,
                                  struct grrl_context contexts[GRRL_DIRECTIONS])
 {
     struct grrl_link_frame frame;
-    if (grrl_grounding_frame(model, body, &frame) != GRRL_OK) {
+    if (grrl_grounding_frame(model, body, &frame) != GRRL_OK)
         return GRRL_ERR_ARGUMENT;
-    }
     const struct grrl_attempts *link = NULL;
     unsigned all_tried = 0;
-    for (unsigned i = 0; i < GRRL_MAX_LINKS; ++i) {
-        if (attempts->link[i].number == model->body[body].number) {
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (attempts->link[i].number == model->body[body].number)
             link = &attempts->link[i];
-        }
-    }
-    for (uint8_t d = 0; d < GRRL_DIRECTIONS && link != NULL; ++d) {
+    for (uint8_t d = 0; d < GRRL_DIRECTIONS && link != NULL; d++)
         all_tried += link->tried[d];
-    }
     struct grrl_context common;
     describe(model, large_m, body, &common);
-    for (uint8_t d = 0; d < GRRL_DIRECTIONS; ++d) {
+    for (uint8_t d = 0; d < GRRL_DIRECTIONS; d++) {
         unsigned tried = link != NULL ? link->tried[d] : 0;
         contexts[d] = common;
         contexts[d].part[GRRL_CONTEXT_DIRECTION] = slant(grrl_direction_deg[d]);

@@ -37,9 +37,8 @@ static void add(struct part_sum *to, const struct part_sum *one, float sign)
 /* Chi squared that a shift and a turn of its own save a part. */
 static float saved(const struct part_sum *s, float least_w)
 {
-    if (!(s->w > least_w)) {
+    if (!(s->w > least_w))
         return 0.0f;
-    }
     float inertia = s->qq - grrl_vec2_dot(s->q, s->q) / s->w;
     float moment = s->moment - grrl_vec2_cross(s->q, s->d) / s->w;
     float turn = inertia > 1e-6f * s->qq ? moment * moment / inertia : 0.0f;
@@ -60,16 +59,14 @@ static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl
 {
     struct part_sum one = {0};
     uint8_t weight = p->keyframe[k].weight[slot];
-    if (weight == 0 || !(t->pose[k].mass > 0.0f)) {
+    if (weight == 0 || !(t->pose[k].mass > 0.0f))
         return one;
-    }
     struct grrl_vec2 q = t->shape[slot];
     struct grrl_vec2 d =
         grrl_vec2_sub(grrl_untransform(t->pose[k].pose, p->keyframe[k].point[slot]), q);
     float reach = p->config.jump_m;
-    if (grrl_vec2_dot(d, d) > reach * reach) {
+    if (grrl_vec2_dot(d, d) > reach * reach)
         return one;
-    }
     one.w = 1.0f / grrl_keyframe_variance(p, weight);
     one.q = grrl_vec2_scale(q, one.w);
     one.d = grrl_vec2_scale(d, one.w);
@@ -135,9 +132,8 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
     struct part_sum left[GRRL_MAX_KEYFRAMES];
     uint16_t order[GRRL_MAX_FEATURES];
     sum_all(p, t, all);
-    for (uint16_t i = 0; i < t->n; i++) {
+    for (uint16_t i = 0; i < t->n; i++)
         order[i] = t->slot[i];
-    }
     float now = saved_as_is(p, t, p->body_of, body, all);
     float best = now;
     uint16_t least = p->config.min_features;
@@ -145,9 +141,8 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
     *n_part = 0;
     for (int turn = 0; turn < DIRECTIONS; turn++) {
         sort_along(t, direction, order, t->n);
-        for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        for (uint8_t k = 0; k < p->n_keyframes; k++)
             left[k] = (struct part_sum){0};
-        }
         for (uint16_t i = 0; i + least < t->n; i++) {
             float total = 0.0f;
             for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -158,9 +153,8 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
             if (i + 1 >= least && total > best) {
                 best = total;
                 *n_part = (uint16_t)(i + 1);
-                for (uint16_t j = 0; j <= i; j++) {
+                for (uint16_t j = 0; j <= i; j++)
                     part[j] = order[j];
-                }
             }
         }
         direction = rotate_30(direction);
@@ -176,9 +170,8 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
 static void cross(const struct grrl_together *t, struct grrl_vec2 direction, bool *is_left)
 {
     struct grrl_vec2 middle = {0.0f, 0.0f};
-    for (uint16_t i = 0; i < t->n; i++) {
+    for (uint16_t i = 0; i < t->n; i++)
         middle = grrl_vec2_add(middle, grrl_vec2_scale(t->shape[t->slot[i]], 1.0f / (float)t->n));
-    }
     for (uint16_t i = 0; i < t->n; i++) {
         struct grrl_vec2 q = grrl_vec2_sub(t->shape[t->slot[i]], middle);
         is_left[i] = grrl_vec2_dot(direction, q) * grrl_vec2_cross(direction, q) > 0.0f;
@@ -223,20 +216,17 @@ static float share_out(const struct grrl_perception *p, const struct grrl_togeth
             excess[i] += one.w > 0.0f ? left_over(&left, &one) - left_over(&right, &one) : 0.0f;
         }
     }
-    for (uint16_t i = 0; i < t->n; i++) {
+    for (uint16_t i = 0; i < t->n; i++)
         is_left[i] = excess[i] < 0.0f;
-    }
     return total;
 }
 
 static uint16_t take_left(const struct grrl_together *t, const bool *is_left, uint16_t *part)
 {
     uint16_t n = 0;
-    for (uint16_t i = 0; i < t->n; i++) {
-        if (is_left[i]) {
+    for (uint16_t i = 0; i < t->n; i++)
+        if (is_left[i])
             part[n++] = t->slot[i];
-        }
-    }
     return n;
 }
 
@@ -252,9 +242,8 @@ static bool lie_across(const struct grrl_perception *p, const struct grrl_togeth
     float radius2 = 0.0f; /* the sum of mean squared radii */
     struct grrl_vec2 apart = {0.0f, 0.0f};
     for (int i = 0; i < 2; i++) {
-        if (!(side[i].w > 0.0f)) {
+        if (!(side[i].w > 0.0f))
             return false;
-        }
         struct grrl_vec2 mean = grrl_vec2_scale(side[i].q, 1.0f / side[i].w);
         radius2 += side[i].qq / side[i].w - grrl_vec2_dot(mean, mean);
         apart = grrl_vec2_sub(mean, apart);
@@ -270,9 +259,8 @@ float grrl_best_cross(const struct grrl_perception *p, const struct grrl_togethe
     bool is_left[GRRL_MAX_FEATURES];
     uint16_t trial[GRRL_MAX_FEATURES];
     *n_part = 0;
-    if (!lie_across(p, t, body)) {
+    if (!lie_across(p, t, body))
         return 0.0f;
-    }
     sum_all(p, t, all);
     float now = saved_as_is(p, t, p->body_of, body, all);
     float best = now;
@@ -299,12 +287,10 @@ float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body)
     uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part;
     together.n = grrl_body_slots(p, body, together.slot);
-    for (uint16_t i = 0; i < together.n; i++) {
+    for (uint16_t i = 0; i < together.n; i++)
         together.shape[together.slot[i]] = p->shape[together.slot[i]];
-    }
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
         together.pose[k] = p->pose[k][body];
-    }
     float chance = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
     float gain = grrl_best_cut(p, &together, body, part, &n_part) / p->config.slack;
     return gain > chance ? (gain - chance) / grrl_sqrt(2.0f * chance) : 0.0f;

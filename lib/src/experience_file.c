@@ -29,18 +29,18 @@ enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
     grrl_record_put(&record, store->n_experiences, 4);
     grrl_record_put(&record, store->clock, 4);
     enum grrl_status status = grrl_record_write(&record);
-    for (uint32_t i = 0; i < store->n_states && status == GRRL_OK; ++i) {
+    for (uint32_t i = 0; i < store->n_states && status == GRRL_OK; i++) {
         struct grrl_graph graph;
         grrl_experience_graph(&store->states[i], &graph);
         grrl_record_put(&record, graph.n, 1);
-        for (uint8_t link = 0; link < graph.n; ++link) {
+        for (uint8_t link = 0; link < graph.n; link++) {
             grrl_record_put(&record, graph.label[link], 8);
             grrl_record_put(&record, graph.joined[GRRL_REVOLUTE][link], 4);
             grrl_record_put(&record, graph.joined[GRRL_PRISMATIC][link], 4);
         }
         status = grrl_record_write(&record);
     }
-    for (uint32_t i = 0; i < store->n_experiences && status == GRRL_OK; ++i) {
+    for (uint32_t i = 0; i < store->n_experiences && status == GRRL_OK; i++) {
         const struct grrl_experience *experience = &store->experiences[i];
         grrl_record_put(&record, experience->state, 4);
         grrl_record_put(&record, experience->link, 1);
@@ -64,27 +64,22 @@ struct header {
 static enum grrl_status read_header(const struct grrl_experience_store *store,
                                     struct grrl_record *record, struct header *header)
 {
-    if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
-    if (memcmp(record->bytes, magic, sizeof magic) != 0) {
+    if (memcmp(record->bytes, magic, sizeof magic) != 0)
         return GRRL_ERR_FORMAT;
-    }
     record->n = sizeof magic;
-    if (grrl_record_take(record, 2) != FILE_VERSION) {
+    if (grrl_record_take(record, 2) != FILE_VERSION)
         return GRRL_ERR_VERSION;
-    }
     bool fits = grrl_record_take(record, 1) == GRRL_MAX_PROPERTIES;
     fits = grrl_record_take(record, 1) == GRRL_DIRECTIONS && fits;
     header->n_states = (uint32_t)grrl_record_take(record, 4);
     header->n_experiences = (uint32_t)grrl_record_take(record, 4);
     header->clock = (uint32_t)grrl_record_take(record, 4);
-    if (grrl_record_check(record, HEADER_BYTES) != GRRL_OK) {
+    if (grrl_record_check(record, HEADER_BYTES) != GRRL_OK)
         return GRRL_ERR_CORRUPT;
-    }
-    if (!fits) {
+    if (!fits)
         return GRRL_ERR_VERSION;
-    }
     return header->n_states <= store->states_capacity &&
                    header->n_experiences <= store->experiences_capacity
                ? GRRL_OK
@@ -100,19 +95,16 @@ static bool is_label(grrl_label label)
 /* Whether the numbers read are an undirected graph with at most one joint between two links. */
 static bool is_graph(const struct grrl_graph *graph)
 {
-    for (uint8_t i = 0; i < graph->n; ++i) {
+    for (uint8_t i = 0; i < graph->n; i++) {
         uint32_t revolute = graph->joined[GRRL_REVOLUTE][i];
         uint32_t prismatic = graph->joined[GRRL_PRISMATIC][i];
         if ((revolute & prismatic) != 0 || !is_label(graph->label[i]) ||
-            ((revolute | prismatic) & (grrl_bit(i) | ~grrl_bits_below(graph->n))) != 0) {
+            ((revolute | prismatic) & (grrl_bit(i) | ~grrl_bits_below(graph->n))) != 0)
             return false;
-        }
-        for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
-            for (uint8_t j = 0; j < i; ++j) {
-                if ((graph->joined[type][i] >> j & 1u) != (graph->joined[type][j] >> i & 1u)) {
+        for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
+            for (uint8_t j = 0; j < i; j++)
+                if ((graph->joined[type][i] >> j & 1u) != (graph->joined[type][j] >> i & 1u))
                     return false;
-                }
-            }
         }
     }
     return grrl_graph_joint_count(graph) <= GRRL_MAX_JOINTS;
@@ -120,41 +112,34 @@ static bool is_graph(const struct grrl_graph *graph)
 
 static enum grrl_status read_state(struct grrl_experience_store *store, struct grrl_record *record)
 {
-    if (grrl_record_read(record, 1) != GRRL_OK) {
+    if (grrl_record_read(record, 1) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
     uint8_t n = (uint8_t)grrl_record_take(record, 1);
-    if (n == 0 || n > 32) {
+    if (n == 0 || n > 32)
         return GRRL_ERR_CORRUPT;
-    }
-    if (n > GRRL_MAX_LINKS) {
+    if (n > GRRL_MAX_LINKS)
         return GRRL_ERR_VERSION;
-    }
     size_t size = (size_t)n * LINK_BYTES;
-    if (grrl_record_read(record, size + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, size + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
     struct grrl_graph graph;
     grrl_graph_clear(&graph);
     graph.n = n;
-    for (uint8_t i = 0; i < n; ++i) {
+    for (uint8_t i = 0; i < n; i++) {
         graph.label[i] = grrl_record_take(record, 8);
         graph.joined[GRRL_REVOLUTE][i] = (uint32_t)grrl_record_take(record, 4);
         graph.joined[GRRL_PRISMATIC][i] = (uint32_t)grrl_record_take(record, 4);
     }
-    if (grrl_record_check(record, 1 + size) != GRRL_OK || !is_graph(&graph)) {
+    if (grrl_record_check(record, 1 + size) != GRRL_OK || !is_graph(&graph))
         return GRRL_ERR_CORRUPT;
-    }
     struct grrl_experience_state described;
-    if (!grrl_experience_describe(&graph, &described, NULL)) {
+    if (!grrl_experience_describe(&graph, &described, NULL))
         return GRRL_ERR_CORRUPT;
-    }
     struct grrl_graph canonical;
     grrl_experience_graph(&described, &canonical);
     if (!grrl_graph_equal(&graph, &canonical, GRRL_ALL_PROPERTIES) ||
-        grrl_experience_find_state(store, &described) != GRRL_NO_STATE) {
+        grrl_experience_find_state(store, &described) != GRRL_NO_STATE)
         return GRRL_ERR_CORRUPT;
-    }
     (void)grrl_experience_add_state(store, &described);
     return GRRL_OK;
 }
@@ -167,9 +152,8 @@ static bool is_target(float x)
 static enum grrl_status read_experience(struct grrl_experience_store *store,
                                         struct grrl_record *record, uint32_t clock)
 {
-    if (grrl_record_read(record, EXPERIENCE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK) {
+    if (grrl_record_read(record, EXPERIENCE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    }
     uint32_t state = (uint32_t)grrl_record_take(record, 4);
     uint8_t link = (uint8_t)grrl_record_take(record, 1);
     uint8_t direction = (uint8_t)grrl_record_take(record, 1);
@@ -184,9 +168,8 @@ static enum grrl_status read_experience(struct grrl_experience_store *store,
                 is_target(q.mean) && grrl_is_finite(q.deviations) && q.deviations >= 0.0f &&
                 q.n > 0 &&
                 grrl_experience_find(store, state, link, direction) == GRRL_NO_EXPERIENCE;
-    if (!fine) {
+    if (!fine)
         return GRRL_ERR_CORRUPT;
-    }
     uint32_t index = grrl_experience_add(store, state, link, direction);
     store->experiences[index].used_at = used_at;
     store->experiences[index].q = q;
@@ -198,25 +181,20 @@ static enum grrl_status read_all(struct grrl_experience_store *store,
 {
     struct grrl_record record = {.io = io};
     enum grrl_status status = read_header(store, &record, header);
-    for (uint32_t i = 0; status == GRRL_OK && i < header->n_states; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < header->n_states; i++)
         status = read_state(store, &record);
-    }
-    for (uint32_t i = 0; status == GRRL_OK && i < header->n_experiences; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < header->n_experiences; i++)
         status = read_experience(store, &record, header->clock);
-    }
-    for (uint32_t i = 0; status == GRRL_OK && i < store->n_states; ++i) {
+    for (uint32_t i = 0; status == GRRL_OK && i < store->n_states; i++)
         status = store->states[i].experiences > 0 ? GRRL_OK : GRRL_ERR_CORRUPT;
-    }
     return status;
 }
 
 static void drop_unused_states(struct grrl_experience_store *store)
 {
-    for (uint32_t state = store->n_states; state-- > 0;) {
-        if (store->states[state].experiences == 0) {
+    for (uint32_t state = store->n_states; state-- > 0;)
+        if (store->states[state].experiences == 0)
             grrl_experience_remove_state(store, state);
-        }
-    }
 }
 
 enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
@@ -243,8 +221,7 @@ enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
 {
     uint32_t lost;
     enum grrl_status status = grrl_experience_load_torn(store, io, &lost);
-    if (status == GRRL_ERR_IO) {
+    if (status == GRRL_ERR_IO)
         grrl_experience_clear(store);
-    }
     return status;
 }

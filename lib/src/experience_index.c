@@ -39,7 +39,7 @@ void grrl_experience_index_add(struct grrl_experience_index *index,
         }
     }
     index->rows[open] = (struct grrl_experience_row){counts, state->paths, number};
-    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; ++i) {
+    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; i++) {
         uint8_t size = (uint8_t)(counts >> 8 * i);
         index->most[i] = size > index->most[i] ? size : index->most[i];
     }
@@ -50,11 +50,10 @@ void grrl_experience_index_remove(struct grrl_experience_index *index,
 {
     uint32_t cell = cell_of(state->signature.word[0]);
     uint32_t open = index->start[cell];
-    while (index->rows[open].state != number) {
-        ++open;
-    }
+    while (index->rows[open].state != number)
+        open++;
     assert(open < index->start[cell + 1]);
-    for (uint32_t behind = cell + 1; behind <= GRRL_EXPERIENCE_CELLS; ++behind) {
+    for (uint32_t behind = cell + 1; behind <= GRRL_EXPERIENCE_CELLS; behind++) {
         uint32_t last = --index->start[behind];
         if (last != open) {
             index->rows[open] = index->rows[last];
@@ -71,14 +70,13 @@ static void search_cell(const struct grrl_experience_index *index, uint64_t size
     const uint64_t own = current->signature.word[0];
     const struct grrl_paths paths = current->paths;
     uint32_t cell = cell_of(size);
-    for (uint32_t i = index->start[cell]; i < index->start[cell + 1]; ++i) {
+    for (uint32_t i = index->start[cell]; i < index->start[cell + 1]; i++) {
         const struct grrl_experience_row *row = &index->rows[i];
         bool fits = larger ? grrl_experience_fits(own, &paths, row->counts, &row->paths)
                            : grrl_experience_fits(row->counts, &row->paths, own, &paths);
         if (fits && (row->counts & SIZE_BYTES) == size &&
-            grrl_closest_wants(closest, distance, row->state)) {
+            grrl_closest_wants(closest, distance, row->state))
             grrl_closest_add(closest, distance, row->state);
-        }
     }
 }
 
@@ -89,8 +87,8 @@ void grrl_experience_index_find(const struct grrl_experience_index *index,
     const unsigned n = current->n;
     const unsigned r = current->joints[GRRL_REVOLUTE];
     const unsigned p = current->joints[GRRL_PRISMATIC];
-    for (unsigned links = 0; links <= distance; ++links) {
-        for (unsigned revolute = 0; links + revolute <= distance; ++revolute) {
+    for (unsigned links = 0; links <= distance; links++) {
+        for (unsigned revolute = 0; links + revolute <= distance; revolute++) {
             unsigned prismatic = distance - links - revolute;
             if (links <= n && revolute <= r && prismatic <= p) {
                 search_cell(index, size_of(n - links, r - revolute, p - prismatic), false, current,
@@ -113,7 +111,7 @@ unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,
                             current->joints[GRRL_PRISMATIC]};
     unsigned less = 0;
     unsigned more = 0;
-    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; ++i) {
+    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; i++) {
         less += own[i];
         more += index->most[i] > own[i] ? index->most[i] - own[i] : 0;
     }

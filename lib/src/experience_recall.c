@@ -38,28 +38,23 @@ struct binding {
 
 static void clear_binding(struct binding *binding, uint8_t n)
 {
-    for (uint8_t v = 0; v < n; ++v) {
+    for (uint8_t v = 0; v < n; v++)
         binding->to[v] = 0;
-    }
 }
 
 /* Whether an experience of the offered closeness is closer than what the entry has. */
 static bool improves(const struct job *job, uint32_t experience,
                      const struct grrl_recall_entry *entry)
 {
-    if (entry->experience == GRRL_NO_EXPERIENCE) {
+    if (entry->experience == GRRL_NO_EXPERIENCE)
         return true;
-    }
     const struct grrl_recall_entry *offer = &job->offer;
-    if (offer->level != entry->level) {
+    if (offer->level != entry->level)
         return offer->level < entry->level;
-    }
-    if (offer->distance != entry->distance) {
+    if (offer->distance != entry->distance)
         return offer->distance < entry->distance;
-    }
-    if (offer->dropped != entry->dropped) {
+    if (offer->dropped != entry->dropped)
         return offer->dropped < entry->dropped;
-    }
     uint32_t n = job->store->experiences[experience].q.n;
     uint32_t entry_n = job->store->experiences[entry->experience].q.n;
     return n != entry_n ? n > entry_n : experience < entry->experience;
@@ -68,12 +63,11 @@ static bool improves(const struct job *job, uint32_t experience,
 /* Fills in at_least. */
 static void count_joints(struct job *job)
 {
-    for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
-        for (uint8_t c = 0; c < job->current->n; ++c) {
+    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
+        for (uint8_t c = 0; c < job->current->n; c++) {
             unsigned degree = grrl_bit_count(job->current->joined[type][c]);
-            for (unsigned k = 0; k <= degree; ++k) {
+            for (unsigned k = 0; k <= degree; k++)
                 job->at_least[type][k] |= grrl_bit(c);
-            }
         }
     }
 }
@@ -82,14 +76,12 @@ static void count_joints(struct job *job)
 static uint32_t could_bind(const struct job *job, uint8_t v)
 {
     uint32_t links = UINT32_MAX;
-    for (int type = 0; type < GRRL_JOINT_TYPES; ++type) {
+    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
         unsigned degree = grrl_bit_count(job->graph.joined[type][v]);
-        if (job->forth) {
+        if (job->forth)
             links &= job->at_least[type][degree];
-        }
-        if (!job->forth || job->kind == GRRL_MATCH_ISOMORPHISM) {
+        if (!job->forth || job->kind == GRRL_MATCH_ISOMORPHISM)
             links &= ~job->at_least[type][degree + 1];
-        }
     }
     return links;
 }
@@ -120,7 +112,7 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
 static void add_mapping(const struct job *job, const uint8_t *map, struct binding *found)
 {
     uint8_t n = job->forth ? job->graph.n : job->current->n;
-    for (uint8_t i = 0; i < n; ++i) {
+    for (uint8_t i = 0; i < n; i++) {
         uint8_t v = job->forth ? i : map[i];
         uint8_t c = job->forth ? map[i] : i;
         found->to[v] |= grrl_bit(c);
@@ -129,11 +121,9 @@ static void add_mapping(const struct job *job, const uint8_t *map, struct bindin
 
 static bool covers(const struct binding *found, const struct binding *wanted, uint8_t n)
 {
-    for (uint8_t v = 0; v < n; ++v) {
-        if ((wanted->to[v] & ~found->to[v]) != 0) {
+    for (uint8_t v = 0; v < n; v++)
+        if ((wanted->to[v] & ~found->to[v]) != 0)
             return false;
-        }
-    }
     return true;
 }
 
@@ -147,20 +137,18 @@ static void begin(const struct job *job, struct grrl_match *match)
 /* Asks for one mapping through each wanted pair that is not yet known to have one. */
 static void find_pairs(struct job *job, const struct binding *wanted, struct binding *found)
 {
-    for (uint8_t v = 0; v < job->graph.n; ++v) {
+    for (uint8_t v = 0; v < job->graph.n; v++) {
         uint32_t missing = wanted->to[v];
         for (; missing != 0 && job->budget > 0; missing &= missing - 1u) {
             uint8_t c = grrl_first_bit(missing);
-            if ((found->to[v] & grrl_bit(c)) != 0) {
+            if ((found->to[v] & grrl_bit(c)) != 0)
                 continue;
-            }
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
             begin(job, &match);
             grrl_match_fix(&match, job->forth ? v : c, job->forth ? c : v);
-            if (grrl_match_next(&match, map) == GRRL_OK) {
+            if (grrl_match_next(&match, map) == GRRL_OK)
                 add_mapping(job, map, found);
-            }
             job->budget = match.budget;
         }
     }
@@ -171,17 +159,15 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
     clear_binding(found, job->graph.n);
     struct grrl_match match;
     begin(job, &match);
-    for (int i = 0; i < MAPPINGS; ++i) {
+    for (int i = 0; i < MAPPINGS; i++) {
         uint8_t map[GRRL_MAX_LINKS];
         enum grrl_status status = grrl_match_next(&match, map);
         job->budget = match.budget;
-        if (status != GRRL_OK) {
+        if (status != GRRL_OK)
             return;
-        }
         add_mapping(job, map, found);
-        if (covers(found, wanted, job->graph.n)) {
+        if (covers(found, wanted, job->graph.n))
             return;
-        }
     }
     find_pairs(job, wanted, found);
 }
@@ -190,9 +176,8 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
 static void consult(struct job *job)
 {
     struct binding wanted;
-    if (job->budget == 0 || !wanted_bindings(job, &wanted)) {
+    if (job->budget == 0 || !wanted_bindings(job, &wanted))
         return;
-    }
     struct binding found;
     find_bindings(job, &wanted, &found);
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
@@ -215,11 +200,10 @@ static void consult(struct job *job)
 static grrl_label places_in_use(const struct grrl_graph *graph)
 {
     grrl_label used = 0;
-    for (uint8_t i = 0; i < graph->n; ++i) {
+    for (uint8_t i = 0; i < graph->n; i++)
         used |= graph->label[i] == GRRL_LABEL_BACKGROUND ? 0 : graph->label[i];
-    }
     grrl_label places = 0;
-    for (unsigned place = 0; place < GRRL_MAX_PROPERTIES; ++place) {
+    for (unsigned place = 0; place < GRRL_MAX_PROPERTIES; place++) {
         grrl_label byte = UINT64_C(0xff) << (8 * place);
         places |= (used & byte) != 0 ? byte : 0;
     }
@@ -230,9 +214,8 @@ static grrl_label places_in_use(const struct grrl_graph *graph)
 static grrl_label drop_last(grrl_label places)
 {
     grrl_label last = UINT64_C(0xff) << (8 * (GRRL_MAX_PROPERTIES - 1));
-    while ((places & last) == 0) {
+    while ((places & last) == 0)
         last >>= 8;
-    }
     return places & ~last;
 }
 
@@ -244,7 +227,7 @@ static void consult_relaxed(struct job *job)
     while (places != 0) {
         places = drop_last(places);
         job->mask = places;
-        ++job->offer.dropped;
+        job->offer.dropped++;
         consult(job);
     }
 }
@@ -259,12 +242,10 @@ static void consult_substructure(struct job *job, uint8_t distance)
     const struct grrl_signature *stored = &job->stored->signature;
     const struct grrl_signature *current = &job->described->signature;
     if (job->forth ? grrl_signature_within(stored, current, false)
-                   : grrl_signature_within(current, stored, false)) {
+                   : grrl_signature_within(current, stored, false))
         consult(job);
-    }
-    for (; places != 0; places = drop_last(places)) {
-        ++job->offer.dropped;
-    }
+    for (; places != 0; places = drop_last(places))
+        job->offer.dropped++;
     if (job->offer.dropped > 0 && !job->config->strict) {
         job->mask = GRRL_NO_PROPERTIES;
         consult(job);
@@ -290,9 +271,8 @@ static void consult_isomorphic(struct job *job)
         job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
         consult(job);
     }
-    if (job->config->deepest < GRRL_RECALL_RELAXED || job->config->strict) {
+    if (job->config->deepest < GRRL_RECALL_RELAXED || job->config->strict)
         return;
-    }
     uint32_t shape = current->key[GRRL_TABLE_SHAPE];
     uint32_t i = grrl_experience_first_in(job->store, GRRL_TABLE_SHAPE, shape);
     for (; i != GRRL_NO_STATE;
@@ -331,22 +311,19 @@ static void scan_states(const struct grrl_experience_store *store,
     enum { AHEAD = 16 }; /* a state takes a few nanoseconds, memory a hundred */
     const uint64_t own_counts = current->signature.word[0];
     const unsigned own = size_of(own_counts);
-    for (uint32_t i = 0; i < store->n_states; ++i) {
-        if (i + AHEAD < store->n_states) {
+    for (uint32_t i = 0; i < store->n_states; i++) {
+        if (i + AHEAD < store->n_states)
             grrl_prefetch(&store->states[i + AHEAD]);
-        }
         const struct grrl_experience_state *stored = &store->states[i];
         const uint64_t counts = stored->signature.word[0];
         const unsigned size = size_of(counts);
         const bool larger = size > own;
         const unsigned distance = larger ? size - own : own - size;
-        if (distance == 0 || !grrl_closest_wants(closest, distance, i)) {
+        if (distance == 0 || !grrl_closest_wants(closest, distance, i))
             continue;
-        }
         if (larger ? grrl_experience_fits(own_counts, &current->paths, counts, &stored->paths)
-                   : grrl_experience_fits(counts, &stored->paths, own_counts, &current->paths)) {
+                   : grrl_experience_fits(counts, &stored->paths, own_counts, &current->paths))
             grrl_closest_add(closest, distance, i);
-        }
     }
     grrl_closest_sort(closest);
 }
@@ -355,9 +332,9 @@ static void scan_states(const struct grrl_experience_store *store,
 static bool find_open(struct job *job)
 {
     bool any = false;
-    for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (int direction = 0; direction < GRRL_DIRECTIONS; direction++) {
         job->open[direction] = 0;
-        for (uint8_t link = 0; link < job->current->n; ++link) {
+        for (uint8_t link = 0; link < job->current->n; link++) {
             if (job->recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
                 job->open[direction] |= grrl_bit(link);
                 any = true;
@@ -369,19 +346,16 @@ static bool find_open(struct job *job)
 
 static bool knows_open_direction(const struct job *job, const struct grrl_experience_state *stored)
 {
-    for (uint32_t i = stored->first; i != GRRL_NO_EXPERIENCE; i = job->store->experiences[i].next) {
-        if (job->open[job->store->experiences[i].direction] != 0) {
+    for (uint32_t i = stored->first; i != GRRL_NO_EXPERIENCE; i = job->store->experiences[i].next)
+        if (job->open[job->store->experiences[i].direction] != 0)
             return true;
-        }
-    }
     return false;
 }
 
 static void consult_part(struct job *job, uint32_t state, uint8_t distance)
 {
-    if (!knows_open_direction(job, &job->store->states[state])) {
+    if (!knows_open_direction(job, &job->store->states[state]))
         return;
-    }
     take_state(job, state);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
@@ -404,9 +378,8 @@ static void ask_for_links(const struct grrl_experience_store *store,
     enum { LINE_BYTES = 64 };
     grrl_prefetch(&store->experiences[state->first]);
     grrl_prefetch(state->edge);
-    for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0]) {
+    for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0])
         grrl_prefetch(&state->label[i]);
-    }
 }
 
 /* Consults some of the list. Of thousands of states few are in a cache: the memory of each is asked
@@ -416,16 +389,13 @@ static void consult_listed(struct job *job, const struct grrl_closest *closest, 
 {
     enum { FAR = 8, NEAR = 4 };
     const struct grrl_experience_state *states = job->store->states;
-    for (unsigned k = from; k < to + FAR; ++k) {
-        if (k < to) {
+    for (unsigned k = from; k < to + FAR; k++) {
+        if (k < to)
             ask_for_state(&states[closest->state[k]]);
-        }
-        if (k >= from + FAR - NEAR && k < to + FAR - NEAR) {
+        if (k >= from + FAR - NEAR && k < to + FAR - NEAR)
             ask_for_links(job->store, &states[closest->state[k - (FAR - NEAR)]]);
-        }
-        if (k >= from + FAR) {
+        if (k >= from + FAR)
             consult_part(job, closest->state[k - FAR], closest->distance[k - FAR]);
-        }
     }
 }
 
@@ -440,9 +410,8 @@ static void consult_parts(struct job *job)
         job->config->states < GRRL_RECALL_STATES ? job->config->states : GRRL_RECALL_STATES;
     job->kind = GRRL_MATCH_MONOMORPHISM;
     job->steps = GRRL_RECALL_STEPS;
-    if (left == 0 || !find_open(job)) {
+    if (left == 0 || !find_open(job))
         return;
-    }
     if (index != NULL) {
         reach = grrl_experience_index_reach(index, job->described);
     } else {
@@ -450,16 +419,15 @@ static void consult_parts(struct job *job)
         scan_states(job->store, job->described, &closest);
         left = closest.n;
     }
-    for (unsigned d = 1; d <= reach && left > 0 && find_open(job); ++d) {
+    for (unsigned d = 1; d <= reach && left > 0 && find_open(job); d++) {
         if (index != NULL) {
             grrl_closest_clear(&closest, left);
             grrl_experience_index_find(index, job->described, d, &closest);
             to = 0;
         }
         const unsigned from = to;
-        while (to < closest.n && closest.distance[to] == d) {
-            ++to;
-        }
+        while (to < closest.n && closest.distance[to] == d)
+            to++;
         consult_listed(job, &closest, from, to);
         left -= to - from;
     }
@@ -470,28 +438,25 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
                             struct grrl_recall *recall)
 {
     recall->n_links = state->n;
-    for (int link = 0; link < GRRL_MAX_LINKS; ++link) {
-        for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (int link = 0; link < GRRL_MAX_LINKS; link++) {
+        for (int direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             recall->entry[link][direction] =
                 (struct grrl_recall_entry){.experience = GRRL_NO_EXPERIENCE};
         }
     }
     struct grrl_experience_state current;
-    if (store->n_states == 0 || !grrl_experience_describe(state, &current, NULL)) {
+    if (store->n_states == 0 || !grrl_experience_describe(state, &current, NULL))
         return;
-    }
     struct job job = {.store = store,
                       .config = config,
                       .current = state,
                       .described = &current,
                       .places = places_in_use(state),
                       .recall = recall};
-    for (int direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
         job.open[direction] = grrl_bits_below(state->n);
-    }
     count_joints(&job);
     consult_isomorphic(&job);
-    if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE) {
+    if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE)
         consult_parts(&job);
-    }
 }

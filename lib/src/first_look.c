@@ -13,9 +13,8 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
     float nearest = 1e9f;
     float second = 1e9f;
     for (uint16_t j = 0; j < p->n_slots; j++) {
-        if (j == i || key->weight[j] == 0) {
+        if (j == i || key->weight[j] == 0)
             continue;
-        }
         float d = grrl_distance2(key->point[i], key->point[j]);
         if (d < nearest) {
             second = nearest;
@@ -50,9 +49,8 @@ static float object_reach(float *distance2, uint16_t n)
 {
     sort(distance2, n);
     float total = 0.0f;
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         total += grrl_log(distance2[i] + 1e-9f);
-    }
     uint16_t dense = n;
     float best = 0.0f;
     float below = 0.0f;
@@ -94,9 +92,8 @@ bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
     bool reached[GRRL_MAX_FEATURES] = {false};
     uint16_t queue[GRRL_MAX_FEATURES];
     for (uint16_t start = 0; start < p->n_slots; start++) {
-        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0) {
+        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0)
             continue;
-        }
         uint16_t n = 1;
         queue[0] = start;
         reached[start] = true;
@@ -109,9 +106,8 @@ bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
                 }
             }
         }
-        if (n >= p->config.min_features) {
+        if (n >= p->config.min_features)
             return true;
-        }
     }
     return false;
 }
@@ -123,24 +119,21 @@ void grrl_first_look(struct grrl_perception *p)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         p->body_of[i] = p->config.static_background ? GRRL_FEATURE_BACKGROUND : 0;
         p->blob_of[i] = p->config.static_background ? 0 : 1;
-        if (p->keyframe[0].weight[i] > 0) {
+        if (p->keyframe[0].weight[i] > 0)
             values[n++] = neighbour_distance2(p, i);
-        }
     }
     if (!p->config.static_background) {
         grrl_body_add(p);
         return;
     }
-    if (n < 3) {
+    if (n < 3)
         return;
-    }
     float reach = object_reach(values, n);
     p->reach2_m2 = reach * reach;
     uint8_t blob = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS) {
+        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS)
             continue;
-        }
         uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(blob + 1));
         bool is_body = size >= p->config.min_features + 1;
         for (uint16_t j = 0; j < p->n_slots; j++) {

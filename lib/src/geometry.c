@@ -63,9 +63,8 @@ static float cos_polynomial(float x)
 /* sin(angle + shift pi/2) */
 static float sin_shifted(float angle_rad, unsigned shift)
 {
-    if (!(absolute(angle_rad) <= MAX_ANGLE_RAD)) {
+    if (!(absolute(angle_rad) <= MAX_ANGLE_RAD))
         return NAN;
-    }
     unsigned quadrant;
     float x = reduce_quarter(angle_rad, &quadrant);
     quadrant = (quadrant + shift) & 3u;
@@ -101,27 +100,22 @@ float grrl_atan2(float y, float x)
 {
     float ax = absolute(x);
     float ay = absolute(y);
-    if (ax == 0.0f && ay == 0.0f) {
+    if (ax == 0.0f && ay == 0.0f)
         return 0.0f;
-    }
     float angle = ay <= ax ? atan_unit(ay / ax) : 0.5f * GRRL_PI - atan_unit(ax / ay);
-    if (x < 0.0f) {
+    if (x < 0.0f)
         angle = GRRL_PI - angle;
-    }
     return y < 0.0f ? -angle : angle;
 }
 
 float grrl_exp(float x)
 {
-    if (x > 88.72283f) { /* log(FLT_MAX) */
+    if (x > 88.72283f) /* log(FLT_MAX) */
         return FLT_MAX;
-    }
-    if (x < -87.33654f) { /* log(FLT_MIN) */
+    if (x < -87.33654f) /* log(FLT_MIN) */
         return 0.0f;
-    }
-    if (x != x) {
+    if (x != x)
         return x;
-    }
     int n = nearest_int(x * 1.44269504f);
     float whole = (float)n;
     float r = (x - whole * 0.693359375f) + whole * 2.12194440e-4f; /* log 2 in two parts */
@@ -158,12 +152,10 @@ static float split(float x, int *e)
 
 float grrl_log(float x)
 {
-    if (x <= 0.0f) {
+    if (x <= 0.0f)
         return -FLT_MAX;
-    }
-    if (!grrl_is_finite(x)) {
+    if (!grrl_is_finite(x))
         return x;
-    }
     int e;
     float m = split(x, &e) - 1.0f;
     float z = m * m;
@@ -247,20 +239,17 @@ struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world)
 
 float grrl_wrap_rad(float angle_rad)
 {
-    if (!(absolute(angle_rad) <= MAX_ANGLE_RAD)) {
+    if (!(absolute(angle_rad) <= MAX_ANGLE_RAD))
         return NAN;
-    }
-    if (angle_rad > -GRRL_PI && angle_rad <= GRRL_PI) {
+    if (angle_rad > -GRRL_PI && angle_rad <= GRRL_PI)
         return angle_rad;
-    }
     float turns = (float)nearest_int(angle_rad * (0.5f / GRRL_PI));
     float wrapped = ((angle_rad - turns * 6.28125f) - turns * 1.9350051879882812e-3f) -
                     turns * 3.0199159795e-7f;
-    if (wrapped > GRRL_PI) {
+    if (wrapped > GRRL_PI)
         wrapped -= 2.0f * GRRL_PI;
-    } else if (wrapped <= -GRRL_PI) {
+    else if (wrapped <= -GRRL_PI)
         wrapped += 2.0f * GRRL_PI;
-    }
     return wrapped;
 }
 
@@ -290,10 +279,8 @@ void grrl_principal_axes(float xx, float xy, float yy, float *major, float *mino
             half >= 0.0f ? (struct grrl_vec2){half + root, b} : (struct grrl_vec2){b, root - half};
         *axis = grrl_vec2_scale(v, 1.0f / grrl_vec2_length(v));
     }
-    if (axis->x < 0.0f) {
+    if (axis->x < 0.0f)
         *axis = (struct grrl_vec2){-axis->x, -axis->y};
-    }
-    if (axis->x == 0.0f) {
+    if (axis->x == 0.0f)
         *axis = (struct grrl_vec2){0.0f, 1.0f};
-    }
 }

@@ -44,12 +44,11 @@ static uint32_t reach(const struct grrl_model *model, uint32_t from, uint32_t wi
     uint32_t before;
     do {
         before = from;
-        for (uint8_t j = 0; j < model->n_joints; ++j) {
+        for (uint8_t j = 0; j < model->n_joints; j++) {
             uint32_t a = UINT32_C(1) << model->joint[j].a;
             uint32_t b = UINT32_C(1) << model->joint[j].b;
-            if ((from & (a | b)) != 0) {
+            if ((from & (a | b)) != 0)
                 from |= (a | b) & ~without;
-            }
         }
     } while (from != before);
     return from;
@@ -73,9 +72,8 @@ static float joint_place(const struct grrl_body *body, const struct grrl_body *n
     struct grrl_vec2 arm = grrl_vec2_sub(joint->point_m, body->centroid_m);
     float place = grrl_vec2_dot(arm, body->axis);
     float middle = MIDDLE * body->length_m;
-    if (joint->type == GRRL_REVOLUTE && (place > middle || place < -middle)) {
+    if (joint->type == GRRL_REVOLUTE && (place > middle || place < -middle))
         return place;
-    }
     return grrl_vec2_dot(grrl_vec2_sub(neighbour->centroid_m, body->centroid_m), body->axis);
 }
 
@@ -84,9 +82,9 @@ static void weigh(const struct grrl_model *model, uint8_t body, struct end *end)
     end->bodies = reach(model, end->bodies, UINT32_C(1) << body);
     end->links = 0;
     end->length_m = 0.0f;
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
         if ((end->bodies >> i & 1u) != 0) {
-            ++end->links;
+            end->links++;
             end->length_m += model->body[i].length_m;
         }
     }
@@ -95,14 +93,12 @@ static void weigh(const struct grrl_model *model, uint8_t body, struct end *end)
 /* Whether the far end (against the axis) is the one forward points away from. */
 static bool far_end_holds(const struct end *near, const struct end *far)
 {
-    if (near->links != far->links) {
+    if (near->links != far->links)
         return far->links > near->links;
-    }
     float difference = far->length_m - near->length_m;
     float equal = EQUAL_LENGTH * (far->length_m + near->length_m);
-    if (difference > equal || difference < -equal) {
+    if (difference > equal || difference < -equal)
         return difference > 0.0f;
-    }
     return far->first_joint <= near->first_joint;
 }
 
@@ -110,16 +106,14 @@ static struct grrl_vec2 forward_axis(const struct grrl_model *model, uint8_t bod
 {
     const struct grrl_body *self = &model->body[body];
     struct end ends[2] = {{.first_joint = UINT8_MAX}, {.first_joint = UINT8_MAX}};
-    for (uint8_t j = 0; j < model->n_joints; ++j) {
+    for (uint8_t j = 0; j < model->n_joints; j++) {
         const struct grrl_joint *joint = &model->joint[j];
-        if (joint->a != body && joint->b != body) {
+        if (joint->a != body && joint->b != body)
             continue;
-        }
         uint8_t other = joint->a == body ? joint->b : joint->a;
         float place = joint_place(self, &model->body[other], joint);
-        if (place == 0.0f) {
+        if (place == 0.0f)
             continue;
-        }
         struct end *end = &ends[place < 0.0f ? 1 : 0];
         end->bodies |= UINT32_C(1) << other;
         end->first_joint = j < end->first_joint ? j : end->first_joint;
@@ -135,7 +129,7 @@ static struct grrl_vec2 towards_rest(const struct grrl_model *model, uint8_t bod
     uint32_t self = UINT32_C(1) << body;
     uint32_t rest = reach(model, self, 0) & ~self;
     struct grrl_vec2 sum = {0.0f, 0.0f};
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
         if ((rest >> i & 1u) != 0) {
             struct grrl_vec2 arm =
                 grrl_vec2_sub(model->body[i].centroid_m, model->body[body].centroid_m);
@@ -148,14 +142,12 @@ static struct grrl_vec2 towards_rest(const struct grrl_model *model, uint8_t bod
 enum grrl_status grrl_grounding_frame(const struct grrl_model *model, uint8_t body,
                                       struct grrl_link_frame *frame)
 {
-    if (body >= model->n_bodies) {
+    if (body >= model->n_bodies)
         return GRRL_ERR_ARGUMENT;
-    }
     struct grrl_vec2 forward = forward_axis(model, body);
     struct grrl_vec2 side = {-forward.y, forward.x};
-    if (grrl_vec2_dot(side, towards_rest(model, body)) < 0.0f) {
+    if (grrl_vec2_dot(side, towards_rest(model, body)) < 0.0f)
         side = grrl_vec2_scale(side, -1.0f);
-    }
     *frame = (struct grrl_link_frame){forward, side};
     return GRRL_OK;
 }
@@ -183,10 +175,9 @@ static struct span span_along(const struct grrl_model *model, uint8_t body,
     float met = 0.0f;
     bool any = false;
     bool any_met = false;
-    for (uint16_t i = 0; i < model->n_features; ++i) {
-        if (model->feature_body[i] != body) {
+    for (uint16_t i = 0; i < model->n_features; i++) {
+        if (model->feature_body[i] != body)
             continue;
-        }
         struct grrl_vec2 arm = grrl_vec2_sub(model->feature_m[i], centroid);
         float along = grrl_vec2_dot(arm, direction);
         float across = grrl_vec2_cross(arm, direction);
@@ -198,20 +189,18 @@ static struct span span_along(const struct grrl_model *model, uint8_t body,
             any_met = true;
         }
     }
-    if (any_met) {
+    if (any_met)
         all.rear_m = met;
-    }
     return all;
 }
 
 static bool is_blocked(const struct grrl_model *model, struct grrl_vec2 at, float distance_m)
 {
-    for (uint16_t i = 0; i < model->n_features; ++i) {
+    for (uint16_t i = 0; i < model->n_features; i++) {
         if (model->feature_body[i] < model->n_bodies) {
             struct grrl_vec2 arm = grrl_vec2_sub(model->feature_m[i], at);
-            if (grrl_vec2_dot(arm, arm) < distance_m * distance_m) {
+            if (grrl_vec2_dot(arm, arm) < distance_m * distance_m)
                 return true;
-            }
         }
     }
     return false;
@@ -222,17 +211,15 @@ enum grrl_status grrl_grounding_push(const struct grrl_model *model,
                                      uint8_t direction, struct grrl_push *push)
 {
     struct grrl_link_frame frame;
-    if (direction >= GRRL_DIRECTIONS || grrl_grounding_frame(model, body, &frame) != GRRL_OK) {
+    if (direction >= GRRL_DIRECTIONS || grrl_grounding_frame(model, body, &frame) != GRRL_OK)
         return GRRL_ERR_ARGUMENT;
-    }
     struct grrl_vec2 along = grrl_grounding_direction(&frame, direction);
     struct span span = span_along(model, body, along, config->finger_radius_m);
     float free_m = config->finger_radius_m + config->clearance_m;
     struct grrl_vec2 centroid = model->body[body].centroid_m;
     struct grrl_vec2 start = grrl_vec2_add(centroid, grrl_vec2_scale(along, span.rear_m - free_m));
-    for (int i = 0; i < BACK_STEPS && is_blocked(model, start, free_m - EDGE_M); ++i) {
+    for (int i = 0; i < BACK_STEPS && is_blocked(model, start, free_m - EDGE_M); i++)
         start = grrl_vec2_sub(start, grrl_vec2_scale(along, BACK_STEP_M));
-    }
     float beyond_m = span.fore_m + config->travel_m + config->clearance_m;
     *push = (struct grrl_push){.start_m = start,
                                .end_m = grrl_vec2_add(centroid, grrl_vec2_scale(along, beyond_m)),

@@ -54,9 +54,8 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f)) {
+        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f))
             continue;
-        }
         motion->at_rest[motion->n] = p->keyframe[k].at_rest;
         struct relative *r = &motion->at[motion->n++];
         r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
@@ -204,9 +203,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
                           struct grrl_joint_fit *fit)
 {
     struct grrl_vec2 middle = {0.0f, 0.0f};
-    for (uint8_t k = 0; k < motion->n; k++) {
+    for (uint8_t k = 0; k < motion->n; k++)
         middle = grrl_vec2_add(middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
-    }
     float lever2 = 0.25f * grrl_vec2_dot(middle, middle);
     float w = 0.0f;
     struct grrl_vec2 mean = {0.0f, 0.0f};
@@ -265,9 +263,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
 static float free_cost(const struct grrl_perception *p, const struct motion *motion)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
-    for (uint8_t k = 0; k < motion->n; k++) {
+    for (uint8_t k = 0; k < motion->n; k++)
         mean = grrl_vec2_add(mean, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
-    }
     float lever2 = 0.25f * grrl_vec2_dot(mean, mean);
     float cost = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
@@ -330,9 +327,8 @@ static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evi
     gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both = p->pose[k][e->a].mass > 0.0f && p->pose[k][e->b].mass > 0.0f;
-        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap) {
+        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
             return false;
-        }
     }
     return true;
 }
@@ -418,9 +414,8 @@ static void model_probabilities(const float *chi2, float *probability)
         probability[i] = grrl_exp(-0.5f * (chi2[i] - least));
         sum += probability[i];
     }
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         probability[i] /= sum;
-    }
 }
 
 /* Of two joints equally well supported the one nearer to its bodies is the likelier. */
@@ -444,9 +439,8 @@ bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     struct grrl_joint_fit revolute;
     struct grrl_joint_fit prismatic;
     collect(p, a, b, &motion);
-    if (motion.n < 2) {
+    if (motion.n < 2)
         return false;
-    }
     fit_revolute(p, &motion, half_extent(p, a), half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);
     float free = free_cost(p, &motion);

@@ -48,9 +48,8 @@ enum grrl_status grrl_learner_init(struct grrl_learner *learner,
     if (!is_enough(memory, config->policy.kind) ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
         grrl_policy_config_check(&config->policy, NULL) != GRRL_OK ||
-        grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK) {
+        grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK)
         return GRRL_ERR_ARGUMENT;
-    }
     learner->config = *config;
     grrl_experience_init(&learner->store, memory->states, memory->states_capacity,
                          memory->experiences, memory->experiences_capacity);
@@ -87,9 +86,8 @@ void grrl_learner_begin_trial(struct grrl_learner *learner, uint32_t trial)
 void grrl_learner_observe(struct grrl_learner *learner, const struct grrl_frame *frame,
                           bool pushing)
 {
-    if (learner->phase != PHASE_IDLE) {
+    if (learner->phase != PHASE_IDLE)
         grrl_perception_observe(&learner->perception, frame, pushing);
-    }
 }
 
 /* Links and joints of the state beyond the most believed before in this trial, which become known.
@@ -111,13 +109,11 @@ static unsigned reveal(struct grrl_learner *learner)
 
 enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
 {
-    if (learner->phase == PHASE_IDLE) {
+    if (learner->phase == PHASE_IDLE)
         return GRRL_ERR_ORDER;
-    }
     enum grrl_status status = grrl_perception_update(&learner->perception);
-    if (status != GRRL_OK) {
+    if (status != GRRL_OK)
         return status;
-    }
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     grrl_model_graph(model, &learner->state, NULL, NULL);
     grrl_attempts_look(&learner->attempts, model, learner->config.perception.large_m);
@@ -140,7 +136,7 @@ static void describe_actions(struct grrl_learner *learner)
 {
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     learner->contexts.n_links = model->n_bodies;
-    for (uint8_t i = 0; i < model->n_bodies; ++i) {
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
         enum grrl_status status =
             grrl_context_of(&learner->attempts, model, learner->config.perception.large_m, i,
                             learner->contexts.action[i]);
@@ -157,27 +153,24 @@ static enum grrl_status decide(struct grrl_learner *learner, const struct grrl_c
     struct grrl_push push;
     enum grrl_status status = grrl_grounding_push(model, &learner->config.grounding, choice->link,
                                                   choice->direction, &push);
-    if (status != GRRL_OK) {
+    if (status != GRRL_OK)
         return status;
-    }
     *decision = (struct grrl_decision){
         .choice = *choice, .body_number = model->body[choice->link].number, .push = push};
     learner->last_choice = *choice;
     learner->acted_on = learner->state;
     grrl_attempts_add(&learner->attempts, model, choice->link, choice->direction);
     learner->phase = PHASE_ACTING;
-    ++learner->pushes;
+    learner->pushes++;
     return GRRL_OK;
 }
 
 enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_decision *decision)
 {
-    if (learner->phase != PHASE_READY) {
+    if (learner->phase != PHASE_READY)
         return GRRL_ERR_ORDER;
-    }
-    if (learner->state.n == 0) {
+    if (learner->state.n == 0)
         return GRRL_ERR_NONE;
-    }
     const struct grrl_policy_config *policy = &learner->config.policy;
     struct grrl_choice choice;
     if (policy->kind == GRRL_POLICY_LEARN) {
@@ -189,29 +182,24 @@ enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_d
         grrl_policy_choose(policy, &learner->store, &learner->recall, &learner->random, &choice);
     }
     enum grrl_status status = decide(learner, &choice, decision);
-    if (status == GRRL_OK && choice.from.experience != GRRL_NO_EXPERIENCE) {
+    if (status == GRRL_OK && choice.from.experience != GRRL_NO_EXPERIENCE)
         grrl_experience_touch(&learner->store, choice.from.experience);
-    }
     return status;
 }
 
 enum grrl_status grrl_learner_adopt(struct grrl_learner *learner, uint16_t body_number,
                                     uint8_t direction, struct grrl_decision *decision)
 {
-    if (learner->phase != PHASE_READY) {
+    if (learner->phase != PHASE_READY)
         return GRRL_ERR_ORDER;
-    }
-    if (direction >= GRRL_DIRECTIONS) {
+    if (direction >= GRRL_DIRECTIONS)
         return GRRL_ERR_ARGUMENT;
-    }
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     uint8_t link = 0;
-    while (link < learner->state.n && model->body[link].number != body_number) {
-        ++link;
-    }
-    if (link == learner->state.n) {
+    while (link < learner->state.n && model->body[link].number != body_number)
+        link++;
+    if (link == learner->state.n)
         return GRRL_ERR_NONE;
-    }
     const struct grrl_policy_config *policy = &learner->config.policy;
     struct grrl_choice choice = {
         .link = link, .direction = direction, .reason = GRRL_CHOICE_FOREIGN};
@@ -243,17 +231,15 @@ static void learn_q(struct grrl_learner *learner, bool ended, struct grrl_lesson
     uint32_t index;
     if (policy->kind == GRRL_POLICY_PAPER &&
         grrl_experience_update(&learner->store, &learner->acted_on, choice->link, choice->direction,
-                               lesson->target, policy->alpha, &index) == GRRL_OK) {
+                               lesson->target, policy->alpha, &index) == GRRL_OK)
         lesson->experience = index;
-    }
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
                                     struct grrl_lesson *lesson)
 {
-    if (learner->phase != PHASE_DONE) {
+    if (learner->phase != PHASE_DONE)
         return GRRL_ERR_ORDER;
-    }
     const struct grrl_policy_config *policy = &learner->config.policy;
     *lesson = (struct grrl_lesson){.experience = GRRL_NO_EXPERIENCE, .updated_case = GRRL_NO_CASE};
     lesson->reward = (float)reveal(learner) + (ended ? policy->trial_reward : 0.0f);
@@ -300,13 +286,11 @@ enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
     uint32_t lost_cases = 0;
     grrl_cases_clear(&learner->cases);
     enum grrl_status status = grrl_experience_load_torn(&learner->store, io, lost);
-    if (status == GRRL_OK) {
+    if (status == GRRL_OK)
         status = grrl_cases_load_torn(&learner->cases, io, &lost_cases);
-    }
     *lost += lost_cases;
-    if (status != GRRL_OK && status != GRRL_ERR_IO) {
+    if (status != GRRL_OK && status != GRRL_ERR_IO)
         forget(learner);
-    }
     return status;
 }
 
@@ -315,9 +299,8 @@ enum grrl_status grrl_learner_load(struct grrl_learner *learner,
 {
     uint32_t lost;
     enum grrl_status status = grrl_learner_load_torn(learner, io, &lost);
-    if (status == GRRL_ERR_IO) {
+    if (status == GRRL_ERR_IO)
         forget(learner);
-    }
     return status;
 }
 

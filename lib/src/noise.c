@@ -48,14 +48,12 @@ static struct grrl_noise_track *find_track(struct grrl_noise *noise, int32_t id)
     for (uint32_t i = 0; i < PROBES; i++) {
         struct grrl_noise_track *track = &noise->track[(home + i) % GRRL_MAX_FEATURES];
         bool is_free = track->seen == 0 || track->frame + 1 < noise->n_frames;
-        if (!is_free && track->id == id) {
+        if (!is_free && track->id == id)
             return track;
-        }
         room = room == NULL && is_free ? track : room;
     }
-    if (room != NULL) {
+    if (room != NULL)
         *room = (struct grrl_noise_track){.id = id};
-    }
     return room;
 }
 
@@ -75,9 +73,8 @@ void grrl_noise_observe(struct grrl_noise *noise, const struct grrl_frame *frame
         struct grrl_noise_track *track = grrl_is_finite(point.x) && grrl_is_finite(point.y)
                                              ? find_track(noise, frame->id[i])
                                              : NULL;
-        if (track == NULL || (track->seen > 0 && track->frame == noise->n_frames)) {
+        if (track == NULL || (track->seen > 0 && track->frame == noise->n_frames))
             continue; /* no room, or twice in a frame */
-        }
         if (track->seen >= 2) {
             count(noise, point.x - 2.0f * track->last.x + track->before.x);
             count(noise, point.y - 2.0f * track->last.y + track->before.y);
@@ -93,14 +90,12 @@ void grrl_noise_observe(struct grrl_noise *noise, const struct grrl_frame *frame
 static float median_below(const struct grrl_noise *noise, uint32_t end)
 {
     uint32_t total = 0;
-    for (uint32_t i = 0; i < end; i++) {
+    for (uint32_t i = 0; i < end; i++)
         total += noise->bin[i];
-    }
     uint32_t below = 0;
     uint32_t i = 0;
-    while (i + 1 < end && 2 * (below + noise->bin[i]) < total) {
+    while (i + 1 < end && 2 * (below + noise->bin[i]) < total)
         below += noise->bin[i++];
-    }
     float inside = (float)noise->bin[i];
     float share = inside > 0.0f ? (0.5f * (float)total - (float)below) / inside : 0.5f;
     return size_at(i, share);
@@ -108,12 +103,10 @@ static float median_below(const struct grrl_noise *noise, uint32_t end)
 
 enum grrl_status grrl_noise_estimate(const struct grrl_noise *noise, float *sigma_m)
 {
-    if (noise->n_samples < GRRL_NOISE_MIN_SAMPLES) {
+    if (noise->n_samples < GRRL_NOISE_MIN_SAMPLES)
         return GRRL_ERR_NONE;
-    }
-    if (2 * noise->bin[0] >= noise->n_samples) {
+    if (2 * noise->bin[0] >= noise->n_samples)
         return GRRL_ERR_NUMBER;
-    }
     /* Outliers draw a median a little: those far beyond it are left out, and it is taken again. */
     uint32_t end = GRRL_NOISE_BINS;
     float spread = 0.0f;

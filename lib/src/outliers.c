@@ -15,9 +15,8 @@ static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
 {
     const struct grrl_perception_pose *pose = &p->pose[k][p->body_of[slot]];
     uint8_t weight = p->keyframe[k].weight[slot];
-    if (weight == 0 || !(pose->mass > 0.0f)) {
+    if (weight == 0 || !(pose->mass > 0.0f))
         return false;
-    }
     float d2 =
         grrl_distance2(p->keyframe[k].point[slot], grrl_transform(pose->pose, p->shape[slot]));
     return d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_keyframe_variance(p, weight);
@@ -41,17 +40,15 @@ bool grrl_drop_outliers(struct grrl_perception *p)
 {
     bool dropped = false;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        if (p->keyframe[k].examined || p->keyframe[k].at_rest) {
+        if (p->keyframe[k].examined || p->keyframe[k].at_rest)
             continue;
-        }
         for (uint8_t b = 0; b < p->n_bodies; b++) {
             uint16_t off[ALONE_MAX];
             unsigned n = 0;
             for (uint16_t i = 0; i < p->n_slots && n <= ALONE_MAX; i++) {
                 if (p->body_of[i] == b && is_off(p, i, k)) {
-                    if (n < ALONE_MAX) {
+                    if (n < ALONE_MAX)
                         off[n] = i;
-                    }
                     n++;
                 }
             }
@@ -64,8 +61,7 @@ bool grrl_drop_outliers(struct grrl_perception *p)
             }
         }
     }
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
         p->keyframe[k].examined = true;
-    }
     return dropped;
 }

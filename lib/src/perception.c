@@ -58,9 +58,8 @@ enum grrl_status grrl_perception_init(struct grrl_perception *perception,
         !positive(config->min_turn_rad) || !positive(config->min_slide_m) ||
         !positive(config->pivot_scale_m) || !positive(config->gap_m) ||
         !positive(config->large_m) || !(grrl_is_finite(config->slack) && config->slack >= 1.0f) ||
-        config->min_features < 3) {
+        config->min_features < 3)
         return GRRL_ERR_ARGUMENT;
-    }
     memset(perception, 0, sizeof *perception);
     perception->config = *config;
     grrl_perception_reset(perception);
@@ -85,9 +84,8 @@ static uint32_t hash_of(int32_t id)
 
 static void forget_history(struct grrl_perception *p, uint16_t slot)
 {
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
         p->keyframe[k].weight[slot] = 0;
-    }
     p->window.heap[0][slot].n = 0;
     p->window.heap[1][slot].n = 0;
     p->body_of[slot] = GRRL_FEATURE_NONE;
@@ -98,11 +96,9 @@ static void forget_history(struct grrl_perception *p, uint16_t slot)
 /* A slot that no keyframe of the memory has seen can serve another feature. */
 static bool slot_is_stale(const struct grrl_perception *p, uint16_t slot)
 {
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        if (p->keyframe[k].weight[slot] > 0) {
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        if (p->keyframe[k].weight[slot] > 0)
             return false;
-        }
-    }
     return p->window.heap[0][slot].n == 0 && p->last_frame[slot] + 1 < p->counts.frames;
 }
 
@@ -112,9 +108,8 @@ static void rebuild_hash(struct grrl_perception *p)
     memset(p->slot_of_hash, 0, sizeof p->slot_of_hash);
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint32_t h = hash_of(p->id[i]) % size;
-        while (p->slot_of_hash[h] != 0) {
+        while (p->slot_of_hash[h] != 0)
             h = (h + 1) % size;
-        }
         p->slot_of_hash[h] = (uint16_t)(i + 1);
     }
 }
@@ -139,12 +134,10 @@ static bool find_slot(struct grrl_perception *p, int32_t id, uint16_t *slot, boo
         p->slot_of_hash[h] = (uint16_t)(*slot + 1);
     } else {
         uint16_t i = 0;
-        while (i < p->n_slots && !slot_is_stale(p, i)) {
+        while (i < p->n_slots && !slot_is_stale(p, i))
             i++;
-        }
-        if (i == p->n_slots) {
+        if (i == p->n_slots)
             return false;
-        }
         *slot = i;
         p->id[i] = id;
         rebuild_hash(p);
@@ -167,9 +160,8 @@ static bool accept_point(struct grrl_perception *p, uint16_t slot, bool is_new,
         if (grrl_distance2(point, p->last[slot]) > reach * reach &&
             grrl_distance2(point, p->before[slot]) > reach * reach) {
             p->counts.outliers++;
-            if (++p->jumps[slot] < JUMPS_UNTIL_NEW) {
+            if (++p->jumps[slot] < JUMPS_UNTIL_NEW)
                 return false;
-            }
             forget_history(p, slot);
             is_new = true;
         }
@@ -200,9 +192,8 @@ static uint8_t window_mean(const struct grrl_perception *p, uint16_t slot, struc
     const struct grrl_perception_sum *a = &p->window.heap[0][slot];
     const struct grrl_perception_sum *b = &p->window.heap[1][slot];
     const struct grrl_perception_sum *larger = b->n > a->n ? b : a;
-    if (larger->n > 0) {
+    if (larger->n > 0)
         *mean = mean_of(larger);
-    }
     return larger->n;
 }
 
@@ -237,9 +228,8 @@ static unsigned moved_since(const struct grrl_perception *p,
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
         if (key->weight[i] > 0 && window_mean(p, i, &mean) > 0 &&
-            grrl_vec2_length(grrl_vec2_sub(mean, key->point[i])) > distance) {
+            grrl_vec2_length(grrl_vec2_sub(mean, key->point[i])) > distance)
             moved++;
-        }
     }
     return moved;
 }
@@ -309,13 +299,11 @@ static void store_window(struct grrl_perception *p, struct grrl_perception_keyfr
 
 static struct grrl_perception_keyframe *new_keyframe(struct grrl_perception *p)
 {
-    if (p->n_keyframes == GRRL_MAX_KEYFRAMES) {
+    if (p->n_keyframes == GRRL_MAX_KEYFRAMES)
         thin_keyframes(p);
-    }
     p->n_keyframes++;
-    if (p->n_keyframes > p->counts.keyframes_high) {
+    if (p->n_keyframes > p->counts.keyframes_high)
         p->counts.keyframes_high = p->n_keyframes;
-    }
     return &p->keyframe[p->n_keyframes - 1];
 }
 
@@ -324,16 +312,14 @@ static bool join_rest(struct grrl_perception *p)
 {
     struct grrl_perception_keyframe *key = &p->keyframe[p->n_keyframes - 1];
     float distance = 4.0f * p->config.noise_m;
-    if (!key->at_rest || moved_since(p, key, distance) > 0) {
+    if (!key->at_rest || moved_since(p, key, distance) > 0)
         return false;
-    }
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
         float a = (float)key->weight[i];
         float b = (float)window_mean(p, i, &mean);
-        if (!(b > 0.0f)) {
+        if (!(b > 0.0f))
             continue;
-        }
         key->point[i] = grrl_vec2_scale(
             grrl_vec2_add(grrl_vec2_scale(key->point[i], a), grrl_vec2_scale(mean, b)),
             1.0f / (a + b));
@@ -345,9 +331,8 @@ static bool join_rest(struct grrl_perception *p)
 /* The rest being averaged becomes, or refreshes, the last keyframe. */
 static void commit_rest(struct grrl_perception *p)
 {
-    if (p->window.frames == 0) {
+    if (p->window.frames == 0)
         return;
-    }
     if (p->rest_open) {
         store_window(p, &p->keyframe[p->n_keyframes - 1], true);
     } else if (p->n_keyframes > 0 && join_rest(p)) {
@@ -373,14 +358,12 @@ static void window_add(struct grrl_perception *p, const struct grrl_frame *frame
             p->counts.overflow++;
             continue;
         }
-        if (accept_point(p, slot, is_new, point)) {
+        if (accept_point(p, slot, is_new, point))
             window_take(p, slot, point);
-        }
     }
     p->window.frames++;
-    if (p->n_slots > p->counts.features_high) {
+    if (p->n_slots > p->counts.features_high)
         p->counts.features_high = p->n_slots;
-    }
 }
 
 /* At rest nothing leaves its mean; what does is still sliding, and averaging starts anew. */
@@ -391,9 +374,8 @@ static bool still_sliding(const struct grrl_perception *p, const struct grrl_fra
     for (uint32_t i = 0; i < frame->n; i++) {
         uint32_t size = (uint32_t)(sizeof p->slot_of_hash / sizeof p->slot_of_hash[0]);
         uint32_t h = hash_of(frame->id[i]) % size;
-        while (p->slot_of_hash[h] != 0 && p->id[p->slot_of_hash[h] - 1] != frame->id[i]) {
+        while (p->slot_of_hash[h] != 0 && p->id[p->slot_of_hash[h] - 1] != frame->id[i])
             h = (h + 1) % size;
-        }
         struct grrl_vec2 mean;
         if (p->slot_of_hash[h] != 0 &&
             window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean) > 0) {
@@ -412,9 +394,8 @@ static void observe_rest(struct grrl_perception *p, const struct grrl_frame *fra
         p->moving = false;
         p->rest_open = false;
     }
-    if (p->window.frames < REST_FRAMES_MAX) {
+    if (p->window.frames < REST_FRAMES_MAX)
         window_add(p, frame);
-    }
 }
 
 static void observe_push(struct grrl_perception *p, const struct grrl_frame *frame)
@@ -428,9 +409,8 @@ static void observe_push(struct grrl_perception *p, const struct grrl_frame *fra
     window_add(p, frame);
     if (p->window.frames >= MOVING_FRAMES) {
         if (p->n_keyframes == 0 ||
-            moved_since(p, &p->keyframe[p->n_keyframes - 1], p->config.keyframe_m) >= 3) {
+            moved_since(p, &p->keyframe[p->n_keyframes - 1], p->config.keyframe_m) >= 3)
             store_window(p, new_keyframe(p), false);
-        }
         window_clear(p);
     }
 }
@@ -439,19 +419,17 @@ void grrl_perception_observe(struct grrl_perception *perception, const struct gr
                              bool pushing)
 {
     perception->counts.frames++;
-    if (pushing) {
+    if (pushing)
         observe_push(perception, frame);
-    } else {
+    else
         observe_rest(perception, frame);
-    }
 }
 
 enum grrl_status grrl_perception_update(struct grrl_perception *perception)
 {
     commit_rest(perception);
-    if (perception->n_keyframes == 0 || perception->n_slots == 0) {
+    if (perception->n_keyframes == 0 || perception->n_slots == 0)
         return GRRL_ERR_NONE;
-    }
     grrl_bodies_update(perception);
     grrl_structure_update(perception);
     return GRRL_OK;
@@ -469,16 +447,14 @@ void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
     graph->n = model->n_bodies;
     for (uint8_t i = 0; i < model->n_bodies; i++) {
         graph->label[i] = model->body[i].properties;
-        if (names != NULL) {
+        if (names != NULL)
             names[i] = (struct grrl_name){GRRL_NAME_FEATURES, model->body[i].number};
-        }
     }
     for (uint8_t i = 0; i < model->n_joints; i++) {
         const struct grrl_joint *joint = &model->joint[i];
         graph->joined[joint->type][joint->a] |= UINT32_C(1) << joint->b;
         graph->joined[joint->type][joint->b] |= UINT32_C(1) << joint->a;
-        if (edges != NULL) {
+        if (edges != NULL)
             edges[i] = (struct grrl_edge){joint->a, joint->b, joint->type};
-        }
     }
 }

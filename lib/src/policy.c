@@ -45,11 +45,10 @@ enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *confi
         {"recall.states",
          config->recall.states >= 1 && config->recall.states <= GRRL_RECALL_STATES},
     };
-    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; ++i) {
+    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; i++) {
         if (!checks[i].fine) {
-            if (field != NULL) {
+            if (field != NULL)
                 *field = checks[i].name;
-            }
             return GRRL_ERR_ARGUMENT;
         }
     }
@@ -77,11 +76,9 @@ static const struct grrl_q *q_of(const struct grrl_experience_store *store,
 static unsigned count_known(const struct grrl_recall *recall)
 {
     unsigned known = 0;
-    for (uint8_t link = 0; link < recall->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < recall->n_links; link++)
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
             known += recall->entry[link][direction].experience != GRRL_NO_EXPERIENCE;
-        }
-    }
     return known;
 }
 
@@ -105,8 +102,8 @@ void grrl_policy_explain(const struct grrl_policy_config *config,
 /* The nth action without experience. */
 static void pick_unknown(const struct grrl_recall *recall, uint32_t nth, struct grrl_choice *choice)
 {
-    for (uint8_t link = 0; link < recall->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < recall->n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             if (recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE && nth-- == 0) {
                 choice->link = link;
                 choice->direction = direction;
@@ -123,12 +120,11 @@ static void pick_best(const struct grrl_policy_config *config,
 {
     uint32_t equals = 0;
     float best = 0.0f;
-    for (uint8_t link = 0; link < recall->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < recall->n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             const struct grrl_q *q = q_of(store, &recall->entry[link][direction]);
-            if (q == NULL) {
+            if (q == NULL)
                 continue;
-            }
             float lower, upper;
             grrl_policy_bounds(config, q, &lower, &upper);
             if (equals == 0 || upper > best) {
@@ -173,8 +169,8 @@ float grrl_policy_best_value(const struct grrl_experience_store *store,
 {
     bool any = false;
     float best = 0.0f;
-    for (uint8_t link = 0; link < recall->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < recall->n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             const struct grrl_q *q = q_of(store, &recall->entry[link][direction]);
             if (q != NULL && (!any || q->value > best)) {
                 best = q->value;
@@ -209,8 +205,8 @@ void grrl_policy_choose_by_cases(const struct grrl_policy_config *config,
     uint32_t equals = 0;
     unsigned met = 0;
     float best = 0.0f;
-    for (uint8_t link = 0; link < contexts->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < contexts->n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             struct grrl_estimate estimate;
             grrl_cases_estimate(base, &config->cases, &contexts->action[link][direction],
                                 &estimate);
@@ -236,15 +232,14 @@ void grrl_policy_explain_by_cases(const struct grrl_policy_config *config,
                                   const struct grrl_contexts *contexts, struct grrl_choice *choice)
 {
     unsigned met = 0;
-    for (uint8_t link = 0; link < contexts->n_links; ++link) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; ++direction) {
+    for (uint8_t link = 0; link < contexts->n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             struct grrl_estimate estimate;
             grrl_cases_estimate(base, &config->cases, &contexts->action[link][direction],
                                 &estimate);
             met += is_met(&estimate);
-            if (link == choice->link && direction == choice->direction) {
+            if (link == choice->link && direction == choice->direction)
                 set_estimate(choice, &estimate);
-            }
         }
     }
     choice->phi = (float)met / (float)(contexts->n_links * GRRL_DIRECTIONS);

@@ -6,20 +6,18 @@
 static uint32_t crc_of(uint32_t crc, const uint8_t *bytes, size_t n)
 {
     crc = ~crc;
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i < n; i++) {
         crc ^= bytes[i];
-        for (int bit = 0; bit < 8; ++bit) {
+        for (int bit = 0; bit < 8; bit++)
             crc = (crc >> 1) ^ (UINT32_C(0xedb88320) & (0u - (crc & 1u)));
-        }
     }
     return ~crc;
 }
 
 void grrl_record_put(struct grrl_record *record, uint64_t value, unsigned bytes)
 {
-    for (unsigned i = 0; i < bytes; ++i) {
+    for (unsigned i = 0; i < bytes; i++)
         record->bytes[record->n++] = (uint8_t)(value >> (8 * i));
-    }
 }
 
 void grrl_record_put_float(struct grrl_record *record, float value)
@@ -47,9 +45,8 @@ enum grrl_status grrl_record_read(struct grrl_record *record, size_t bytes)
 uint64_t grrl_record_take(struct grrl_record *record, unsigned bytes)
 {
     uint64_t value = 0;
-    for (unsigned i = 0; i < bytes; ++i) {
+    for (unsigned i = 0; i < bytes; i++)
         value |= (uint64_t)record->bytes[record->n++] << (8 * i);
-    }
     return value;
 }
 

@@ -27,9 +27,8 @@ static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t 
         }
     }
     out->mass = 0.0f;
-    if (seen < 2) {
+    if (seen < 2)
         return;
-    }
     world = grrl_vec2_scale(world, 1.0f / mass);
     local = grrl_vec2_scale(local, 1.0f / mass);
     float along = 0.0f;
@@ -46,9 +45,8 @@ static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t 
         }
     }
     float length = grrl_sqrt(along * along + across * across);
-    if (!(length > 0.0f)) {
+    if (!(length > 0.0f))
         return;
-    }
     out->pose.c = along / length;
     out->pose.s = across / length;
     out->pose.p = grrl_vec2_sub(world, grrl_rotate(out->pose, local));
@@ -79,13 +77,11 @@ static uint8_t reference_keyframe(const struct grrl_perception *p, const uint16_
 static void centre(const uint16_t *slots, uint16_t n, struct grrl_vec2 *shape)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         mean = grrl_vec2_add(mean, shape[slots[i]]);
-    }
     mean = grrl_vec2_scale(mean, 1.0f / (float)n);
-    for (uint16_t i = 0; i < n; i++) {
+    for (uint16_t i = 0; i < n; i++)
         shape[slots[i]] = grrl_vec2_sub(shape[slots[i]], mean);
-    }
 }
 
 bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
@@ -103,9 +99,8 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
             mass += w;
         }
     }
-    if (!(mass > 0.0f)) {
+    if (!(mass > 0.0f))
         return false;
-    }
     *local = grrl_vec2_scale(sum, 1.0f / mass);
     return true;
 }
@@ -139,16 +134,13 @@ void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint
             fit_pose(&p->keyframe[k], round == 0 ? known : slots, round == 0 ? n_known : n, shape,
                      &poses[k * stride]);
         }
-        for (uint16_t i = 0; i < n; i++) {
+        for (uint16_t i = 0; i < n; i++)
             (void)grrl_rigid_place(p, slots[i], poses, stride, &shape[slots[i]]);
-        }
-        if (round == 0) {
+        if (round == 0)
             centre(slots, n, shape);
-        }
     }
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
         fit_pose(&p->keyframe[k], slots, n, shape, &poses[k * stride]);
-    }
 }
 
 /* Farther off its body than noise, and a joint too small to be told, explain. */
@@ -183,11 +175,9 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         uint16_t kept[GRRL_MAX_FEATURES];
         uint16_t n_kept = 0;
-        for (uint16_t i = 0; i < n; i++) {
-            if (p->keyframe[k].weight[slots[i]] > 0) {
+        for (uint16_t i = 0; i < n; i++)
+            if (p->keyframe[k].weight[slots[i]] > 0)
                 kept[n_kept++] = slots[i];
-            }
-        }
         struct grrl_perception_pose pose = poses[k * stride];
         uint16_t least = (uint16_t)(n_kept - n_kept / 3);
         uint16_t worst = 0;
@@ -196,9 +186,8 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
             kept[worst] = kept[--n_kept];
             fit_pose(&p->keyframe[k], kept, n_kept, shape, &pose);
         }
-        if (n_kept >= least) {
+        if (n_kept >= least)
             poses[k * stride] = pose;
-        }
     }
 }
 
@@ -212,9 +201,8 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
-        if (w == 0 || !(pose->mass > 0.0f)) {
+        if (w == 0 || !(pose->mass > 0.0f))
             continue;
-        }
         struct grrl_vec2 r =
             grrl_vec2_sub(p->keyframe[k].point[slot], grrl_transform(pose->pose, local));
         float lever2 = grrl_vec2_dot(local, local);
@@ -231,10 +219,8 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
 uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots)
 {
     uint16_t n = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body)
             slots[n++] = i;
-        }
-    }
     return n;
 }

@@ -17,16 +17,13 @@ static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
 {
     uint32_t reached = UINT32_C(1) << a;
     for (unsigned links = 1; links <= GRRL_MAX_LINKS; links++) {
-        if ((reached >> b & 1u) != 0) {
+        if ((reached >> b & 1u) != 0)
             return links;
-        }
         uint32_t next = reached;
-        for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++) {
+        for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++)
             next |= (reached >> i & 1u) != 0 ? joined[i] : 0u;
-        }
-        if (next == reached) {
+        if (next == reached)
             return 0;
-        }
         reached = next;
     }
     return 0;
@@ -37,25 +34,21 @@ static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
 static bool shares_a_pin(const struct grrl_joint_evidence *taken, uint8_t n,
                          const struct grrl_joint_evidence *e, float reach)
 {
-    if (e->type != GRRL_REVOLUTE) {
+    if (e->type != GRRL_REVOLUTE)
         return false;
-    }
     for (uint8_t i = 0; i < n; i++) {
         const struct grrl_joint_evidence *t = &taken[i];
         struct grrl_vec2 d;
-        if (t->type != GRRL_REVOLUTE) {
+        if (t->type != GRRL_REVOLUTE)
             continue;
-        }
-        if (t->a == e->a || t->b == e->a) {
+        if (t->a == e->a || t->b == e->a)
             d = grrl_vec2_sub(t->a == e->a ? t->fit.in_a : t->fit.in_b, e->fit.in_a);
-        } else if (t->a == e->b || t->b == e->b) {
+        else if (t->a == e->b || t->b == e->b)
             d = grrl_vec2_sub(t->a == e->b ? t->fit.in_a : t->fit.in_b, e->fit.in_b);
-        } else {
+        else
             continue;
-        }
-        if (grrl_vec2_length(d) < reach) {
+        if (grrl_vec2_length(d) < reach)
             return true;
-        }
     }
     return false;
 }
@@ -65,9 +58,8 @@ static const struct grrl_joint_evidence *find_revolute(const struct grrl_joint_e
 {
     for (uint16_t i = 0; i < n; i++) {
         bool is_pair = (e[i].a == a && e[i].b == b) || (e[i].a == b && e[i].b == a);
-        if (is_pair && e[i].type == GRRL_REVOLUTE) {
+        if (is_pair && e[i].type == GRRL_REVOLUTE)
             return &e[i];
-        }
     }
     return NULL;
 }
@@ -84,15 +76,13 @@ static bool is_parallelogram(const struct grrl_perception *p, const struct grrl_
     for (uint8_t c = 0; c < p->n_bodies; c++) {
         const struct grrl_joint_evidence *ac = find_revolute(all, n, slide->a, c);
         const struct grrl_joint_evidence *bc = find_revolute(all, n, slide->b, c);
-        if (ac == NULL || bc == NULL) {
+        if (ac == NULL || bc == NULL)
             continue;
-        }
         struct grrl_vec2 pa = ac->a == c ? ac->fit.in_a : ac->fit.in_b;
         struct grrl_vec2 pb = bc->a == c ? bc->fit.in_a : bc->fit.in_b;
         float turned = ac->fit.upper - ac->fit.lower;
-        if (grrl_vec2_length(grrl_vec2_sub(pa, pb)) * turned > 0.5f * slid) {
+        if (grrl_vec2_length(grrl_vec2_sub(pa, pb)) * turned > 0.5f * slid)
             return true;
-        }
     }
     return false;
 }
@@ -233,11 +223,9 @@ static uint8_t order_of_discovery(const struct grrl_perception *p,
             }
         }
     }
-    for (uint8_t i = 0; i < n; i++) {
-        if (!placed[i]) {
+    for (uint8_t i = 0; i < n; i++)
+        if (!placed[i])
             order[count++] = i;
-        }
-    }
     return count;
 }
 
@@ -246,17 +234,13 @@ void grrl_structure_update(struct grrl_perception *p)
     struct grrl_joint_evidence e[GRRL_MAX_LINKS * (GRRL_MAX_LINKS - 1) / 2];
     uint16_t n = 0;
     for (uint8_t a = 0; a < p->n_bodies; a++) {
-        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (grrl_joint_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n])) {
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++)
+            if (grrl_joint_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n]))
                 n++;
-            }
-        }
     }
-    for (uint16_t i = 0; i < n; i++) {
-        if (e[i].type == GRRL_PRISMATIC && is_parallelogram(p, e, n, &e[i])) {
+    for (uint16_t i = 0; i < n; i++)
+        if (e[i].type == GRRL_PRISMATIC && is_parallelogram(p, e, n, &e[i]))
             e[i].order -= PARALLELOGRAM_COST;
-        }
-    }
     uint8_t accepted = choose_structure(p, e, n);
     uint8_t order[GRRL_MAX_JOINTS];
     (void)order_of_discovery(p, e, accepted, order);
@@ -264,9 +248,8 @@ void grrl_structure_update(struct grrl_perception *p)
     model->n_bodies = p->n_bodies;
     model->n_joints = accepted;
     model->n_features = p->n_slots;
-    for (uint8_t i = 0; i < accepted; i++) {
+    for (uint8_t i = 0; i < accepted; i++)
         describe_joint(p, &e[order[i]], &model->joint[i]);
-    }
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint8_t body = p->body_of[i];
         bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].mass > 0.0f;
@@ -276,18 +259,15 @@ void grrl_structure_update(struct grrl_perception *p)
             in_body ? grrl_transform(p->pose[p->n_keyframes - 1][body].pose, p->shape[i])
                     : p->last[i];
     }
-    for (uint8_t b = 0; b < p->n_bodies; b++) {
+    for (uint8_t b = 0; b < p->n_bodies; b++)
         describe_body(p, b, &model->body[b], model);
-    }
 }
 
 static bool is_joined(const struct grrl_model *model, uint8_t a, uint8_t b)
 {
-    for (uint8_t i = 0; i < model->n_joints; i++) {
-        if (model->joint[i].a == a && model->joint[i].b == b) {
+    for (uint8_t i = 0; i < model->n_joints; i++)
+        if (model->joint[i].a == a && model->joint[i].b == b)
             return true;
-        }
-    }
     return false;
 }
 
@@ -297,9 +277,8 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     const struct grrl_model *model = &perception->model;
     uint8_t first = a < b ? a : b;
     uint8_t second = a < b ? b : a;
-    if (first == second || second >= model->n_bodies) {
+    if (first == second || second >= model->n_bodies)
         return GRRL_ERR_ARGUMENT;
-    }
     struct grrl_joint_evidence e = {.fit = {.excited = false}};
     (void)grrl_joint_weigh(perception, first, second, &e);
     *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f};
@@ -308,10 +287,9 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
         pair->p_prismatic = e.p[1];
         pair->p_disconnected = e.p[2];
     }
-    if (is_joined(model, first, second)) {
+    if (is_joined(model, first, second))
         pair->relation = GRRL_RELATION_JOINED;
-    } else if (pair->p_disconnected >= SURE_DISCONNECTED) {
+    else if (pair->p_disconnected >= SURE_DISCONNECTED)
         pair->relation = GRRL_RELATION_DISCONNECTED;
-    }
     return GRRL_OK;
 }

@@ -68,9 +68,8 @@ static float running_median(const struct grrl_trajectory *t, uint32_t i, uint8_t
     for (uint32_t j = i - reach; j <= i + reach; j++) {
         float value = coordinate(t, j, axis);
         unsigned k = n++;
-        for (; k > 0 && sorted[k - 1] > value; k--) {
+        for (; k > 0 && sorted[k - 1] > value; k--)
             sorted[k] = sorted[k - 1];
-        }
         sorted[k] = value;
     }
     return sorted[reach];
@@ -95,9 +94,8 @@ static float dot3(const float *a, const float *b)
 
 static void offset_from_origin(const struct view *view, uint32_t i, float *offset)
 {
-    for (uint8_t axis = 0; axis < 3; axis++) {
+    for (uint8_t axis = 0; axis < 3; axis++)
         offset[axis] = coordinate(view->trajectory, i, axis) - view->origin[axis];
-    }
 }
 
 static struct grrl_vec2 project(const struct view *view, uint32_t i)
@@ -112,9 +110,8 @@ static struct grrl_vec2 project(const struct view *view, uint32_t i)
 /* One Jacobi rotation that makes m[p][q] zero; the columns of axes turn along. */
 static void jacobi_rotate(float m[3][3], float axes[3][3], int p, int q)
 {
-    if (m[p][q] == 0.0f) {
+    if (m[p][q] == 0.0f)
         return;
-    }
     float ratio = (m[q][q] - m[p][p]) / (2.0f * m[p][q]);
     float t = 1.0f / ((ratio < 0.0f ? -ratio : ratio) + grrl_sqrt(ratio * ratio + 1.0f));
     t = ratio < 0.0f ? -t : t;
@@ -151,9 +148,8 @@ static void main_axes(float m[3][3], struct view *view)
     first = m[2][2] > m[first][first] ? 2 : first;
     int second = first == 0 ? 1 : 0;
     int third = 3 - first - second;
-    if (m[third][third] > m[second][second]) {
+    if (m[third][third] > m[second][second])
         second = third;
-    }
     for (int i = 0; i < 3; i++) {
         view->u[i] = axes[i][first];
         view->v[i] = axes[i][second];
@@ -170,22 +166,19 @@ static uint32_t find_origin(struct view *view)
 {
     uint32_t n = 0;
     float sum[3] = {0.0f};
-    for (uint8_t axis = 0; axis < 3; axis++) {
+    for (uint8_t axis = 0; axis < 3; axis++)
         view->origin[axis] = coordinate(view->trajectory, view->trajectory->n / 2, axis);
-    }
     for (uint32_t i = 0; i < view->trajectory->n; i++) {
         if (is_kept(view, i)) {
             float offset[3];
             offset_from_origin(view, i, offset);
-            for (uint8_t axis = 0; axis < 3; axis++) {
+            for (uint8_t axis = 0; axis < 3; axis++)
                 sum[axis] += offset[axis];
-            }
             n++;
         }
     }
-    for (uint8_t axis = 0; axis < 3 && n > 0; axis++) {
+    for (uint8_t axis = 0; axis < 3 && n > 0; axis++)
         view->origin[axis] += sum[axis] / (float)n;
-    }
     return n;
 }
 
@@ -200,20 +193,17 @@ static bool find_plane(struct view *view, struct grrl_trajectory_fit *fit)
         if (is_kept(view, i)) {
             float offset[3];
             offset_from_origin(view, i, offset);
-            for (int k = 0; k < 9; k++) {
+            for (int k = 0; k < 9; k++)
                 spread[k / 3][k % 3] += offset[k / 3] * offset[k % 3];
-            }
         }
     }
-    if (n < GRRL_TRAJECTORY_MIN_SAMPLES || !(spread[0][0] + spread[1][1] + spread[2][2] > 0.0f)) {
+    if (n < GRRL_TRAJECTORY_MIN_SAMPLES || !(spread[0][0] + spread[1][1] + spread[2][2] > 0.0f))
         return false;
-    }
     memcpy(turned, spread, sizeof turned);
     main_axes(turned, view);
     float across = 0.0f;
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         across += view->w[a] * dot3(spread[a], view->w);
-    }
     fit->out_of_plane_m = grrl_sqrt(across > 0.0f ? across / (float)n : 0.0f);
     return true;
 }
@@ -250,9 +240,8 @@ static void evaluate(const struct view *view, const struct curve *curve, bool st
     uint32_t n = 0;
     memset(normal, 0, sizeof *normal);
     for (uint32_t i = 0; i < view->trajectory->n; i++) {
-        if (!is_kept(view, i)) {
+        if (!is_kept(view, i))
             continue;
-        }
         float j[3];
         float r = distance(curve, project(view, i), step ? j : NULL);
         float weight = 1.0f / (1.0f + r * r / reach2);
@@ -281,16 +270,14 @@ static void solve_damped(const struct normal *normal, float damping, int first, 
     for (int i = first; i < 3; i++) { /* symmetric and positive: no pivoting */
         for (int r = i + 1; r < 3; r++) {
             float factor = m[r][i] / m[i][i];
-            for (int c = i; c < 4; c++) {
+            for (int c = i; c < 4; c++)
                 m[r][c] -= factor * m[i][c];
-            }
         }
     }
     for (int i = 2; i >= first; i--) {
         x[i] = m[i][3];
-        for (int c = i + 1; c < 3; c++) {
+        for (int c = i + 1; c < 3; c++)
             x[i] -= m[i][c] * x[c];
-        }
         x[i] /= m[i][i];
     }
 }
@@ -310,21 +297,18 @@ static void refine(const struct view *view, bool curved, struct curve *curve, st
             next = (struct curve){curve->a + x[0], curve->d + x[1],
                                   grrl_wrap_rad(curve->angle + x[2])};
             bool exists = 1.0f + 4.0f * next.a * next.d > 1e-3f;
-            if (exists) {
+            if (exists)
                 evaluate(view, &next, true, &next_normal);
-            }
             better = exists && next_normal.loss < normal->loss;
             damping *= better ? 0.1f : 10.0f;
         }
-        if (!better) {
+        if (!better)
             return;
-        }
         bool done = normal->loss - next_normal.loss < 1e-5f * normal->loss;
         *curve = next;
         *normal = next_normal;
-        if (done) {
+        if (done)
             return;
-        }
     }
 }
 
@@ -346,9 +330,8 @@ static bool algebraic_circle(const struct view *view, struct curve *curve)
     solve_damped(&sums, 0.0f, 0, x);
     struct grrl_vec2 centre = {0.5f * x[0], 0.5f * x[1]};
     float radius = grrl_sqrt(x[2] + grrl_vec2_dot(centre, centre));
-    if (!grrl_is_finite(radius) || !(radius > 0.0f)) {
+    if (!grrl_is_finite(radius) || !(radius > 0.0f))
         return false;
-    }
     *curve = (struct curve){0.5f / radius, -0.5f * x[2] / radius, grrl_atan2(-centre.y, -centre.x)};
     return true;
 }
@@ -357,9 +340,8 @@ static bool algebraic_circle(const struct view *view, struct curve *curve)
 
 static void to_space(const struct view *view, struct grrl_vec2 p, float *point)
 {
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         point[i] = view->origin[i] + p.x * view->u[i] + p.y * view->v[i];
-    }
 }
 
 static void describe_line(const struct view *view, const struct curve *line,
@@ -377,9 +359,8 @@ static void describe_line(const struct view *view, const struct curve *line,
         }
     }
     to_space(view, grrl_vec2_scale(normal, -line->d), model->point_m);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++)
         model->axis[i] = along.x * view->u[i] + along.y * view->v[i];
-    }
     model->travel = high - low;
 }
 
@@ -392,9 +373,8 @@ static float angle_travelled(const struct view *view, struct grrl_vec2 centre)
     bool started = false;
     struct grrl_vec2 last = {0.0f, 0.0f};
     for (uint32_t i = 0; i < view->trajectory->n; i++) {
-        if (!is_kept(view, i)) {
+        if (!is_kept(view, i))
             continue;
-        }
         struct grrl_vec2 arm = grrl_vec2_sub(project(view, i), centre);
         angle += started ? grrl_atan2(grrl_vec2_cross(last, arm), grrl_vec2_dot(last, arm)) : 0.0f;
         low = angle < low ? angle : low;
@@ -410,9 +390,8 @@ static void describe_circle(const struct view *view, const struct curve *circle,
 {
     const float straightest = 0.5f / FARTHEST_M;
     float a = circle->a;
-    if (a > -straightest && a < straightest) {
+    if (a > -straightest && a < straightest)
         a = a < 0.0f ? -straightest : straightest;
-    }
     float e2 = 1.0f + 4.0f * a * circle->d;
     float arm = -grrl_sqrt(e2 > 0.0f ? e2 : 0.0f) / (2.0f * a);
     struct grrl_vec2 centre = {arm * grrl_cos(circle->angle), arm * grrl_sin(circle->angle)};
@@ -489,24 +468,19 @@ enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory
     if (trajectory->dimensions < 2 || trajectory->dimensions > 3 ||
         !grrl_is_finite(config->noise_m) || !(config->noise_m > 0.0f) ||
         !grrl_is_finite(config->effective_samples) || !(config->effective_samples >= 1.0f) ||
-        !grrl_is_finite(config->radius_m) || !(config->radius_m > 0.0f)) {
+        !grrl_is_finite(config->radius_m) || !(config->radius_m > 0.0f))
         return GRRL_ERR_ARGUMENT;
-    }
-    if (trajectory->n < GRRL_TRAJECTORY_MIN_SAMPLES) {
+    if (trajectory->n < GRRL_TRAJECTORY_MIN_SAMPLES)
         return GRRL_ERR_NONE;
-    }
-    for (size_t i = 0; i < (size_t)trajectory->n * trajectory->dimensions; i++) {
-        if (!(trajectory->rows_m[i] >= -FARTHEST_M && trajectory->rows_m[i] <= FARTHEST_M)) {
+    for (size_t i = 0; i < (size_t)trajectory->n * trajectory->dimensions; i++)
+        if (!(trajectory->rows_m[i] >= -FARTHEST_M && trajectory->rows_m[i] <= FARTHEST_M))
             return GRRL_ERR_NUMBER;
-        }
-    }
     struct view view = {.trajectory = trajectory,
                         .outlier_m = OUTLIER_SIGMAS * config->noise_m,
                         .noise_m = config->noise_m};
     struct grrl_trajectory_fit result = {.radius_m = 0.0f};
-    if (!find_plane(&view, &result)) {
+    if (!find_plane(&view, &result))
         return GRRL_ERR_NONE;
-    }
     fit_models(&view, config, &result);
     *fit = result;
     return GRRL_OK;

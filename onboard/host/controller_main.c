@@ -135,7 +135,7 @@ int main(int argc, char **argv)
     const char *path = NULL;
     uint64_t every = 0, seed = 1;
     int id;
-    while ((id = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    while ((id = getopt_long(argc, argv, "", options, NULL)) != -1)
         if (id == 's')
             path = optarg;
         else if (id == 'h' || id == 'v')
@@ -145,7 +145,6 @@ int main(int argc, char **argv)
         else if ((id == 'd' && !take_number("damage", optarg, UINT32_MAX, &every)) ||
                  (id == 'r' && !take_number("seed", optarg, UINT64_MAX, &seed)))
             return 2;
-    }
     if (path == NULL || optind < argc) {
         (void)fprintf(stderr, "grrl-controller: %s\nTry grrl-controller --help\n",
                       path == NULL ? "--socket is needed" : "there are no arguments");

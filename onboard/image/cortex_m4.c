@@ -89,16 +89,13 @@ _Noreturn void reset(void)
     uint32_t *here;
     __asm__ volatile("mov %0, sp" : "=r"(here));
     /* Volatile: the compiler makes this no memset, which would paint its own frame. */
-    for (volatile uint32_t *word = stack_bottom; word < here; word++) {
+    for (volatile uint32_t *word = stack_bottom; word < here; word++)
         *word = 0xa5a5a5a5u;
-    }
     const uint32_t *from = data_image;
-    for (uint32_t *to = data_start; to < data_end; to++) {
+    for (uint32_t *to = data_start; to < data_end; to++)
         *to = *from++;
-    }
-    for (uint32_t *word = bss_start; word < bss_end; word++) {
+    for (uint32_t *word = bss_start; word < bss_end; word++)
         *word = 0;
-    }
     protect();
     TIMER_RELOAD = UINT32_MAX;
     TIMER_VALUE = UINT32_MAX;
@@ -114,9 +111,8 @@ uint8_t machine_serial_get(void)
 {
     __asm__ volatile("cpsid i");
     NVIC_ENABLE = 1;
-    while ((UART_STATE & 2u) == 0) {
+    while ((UART_STATE & 2u) == 0)
         __asm__ volatile("wfi");
-    }
     NVIC_DISABLE = 1;
     UART_INTERRUPT = 2;
     NVIC_CLEAR = 1;

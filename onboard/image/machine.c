@@ -60,9 +60,8 @@ size_t machine_stack_size(void)
 size_t machine_stack_used(void)
 {
     const uint32_t *word = stack_bottom;
-    while (word < stack_top && *word == STACK_PAINT) {
+    while (word < stack_top && *word == STACK_PAINT)
         word++;
-    }
     return (size_t)((uintptr_t)stack_top - (uintptr_t)word);
 }
 
@@ -97,15 +96,14 @@ void machine_provoke(const char *fault)
 {
     volatile uint32_t zero = 0;
     volatile uint32_t seven = 7;
-    if (strcmp(fault, "null") == 0) {
+    if (strcmp(fault, "null") == 0)
         zero = *(volatile uint32_t *)(uintptr_t)(16 + zero);
-    } else if (strcmp(fault, "address") == 0) {
+    else if (strcmp(fault, "address") == 0)
         *(volatile uint32_t *)(uintptr_t)(0xd0000000u + zero) = 1;
-    } else if (strcmp(fault, "stack") == 0) {
+    else if (strcmp(fault, "stack") == 0)
         zero = overflow_stack(zero);
-    } else if (strcmp(fault, "divide") == 0) {
+    else if (strcmp(fault, "divide") == 0)
         seven = seven / zero;
-    } else if (strcmp(fault, "assert") == 0) {
+    else if (strcmp(fault, "assert") == 0)
         __assert_func(__FILE__, __LINE__, __func__, "provoked");
-    }
 }

@@ -30,9 +30,8 @@ static int read_input(void *context, void *bytes, size_t size)
         if (input.at == input.n) {
             input.n = machine_read(input.file, input.bytes, sizeof input.bytes);
             input.at = 0;
-            if (input.n == 0) {
+            if (input.n == 0)
                 return -1;
-            }
         }
         size_t n = input.n - input.at < size ? input.n - input.at : size;
         memcpy(to, input.bytes + input.at, n);
@@ -46,9 +45,8 @@ static int read_input(void *context, void *bytes, size_t size)
 static void write_hash(const char *name, uint64_t hash)
 {
     char digits[20] = " 0123456789abcdef\n";
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 16; i++)
         digits[16 - i] = "0123456789abcdef"[hash >> (4 * i) & 15];
-    }
     machine_write(name);
     machine_write(digits);
 }
@@ -142,9 +140,8 @@ static _Noreturn void serve(void)
     onboard_server_init(&server, &controller);
     for (;;) {
         size_t n = onboard_server_take(&server, machine_serial_get());
-        for (size_t i = 0; i < n; i++) {
+        for (size_t i = 0; i < n; i++)
             machine_serial_put(server.line[i]);
-        }
         if (n > 0 && controller.answer.type == ONBOARD_STORE) {
             write_line("damaged", server.damaged);
             write_line("repeated", server.repeated);
@@ -160,16 +157,14 @@ int main(void)
     (void)machine_arguments(arguments, sizeof arguments);
     const char *first = strchr(arguments, ' ');
     first = first != NULL ? first + 1 : "";
-    if (strcmp(first, "serve") == 0) {
+    if (strcmp(first, "serve") == 0)
         serve();
-    }
     if (strncmp(first, "fault ", 6) == 0) {
         machine_provoke(first + 6);
         return EXIT_FINE;
     }
-    if (strncmp(first, "replay ", 7) == 0) {
+    if (strncmp(first, "replay ", 7) == 0)
         return replay(first + 7);
-    }
     if (strcmp(first, "worst") == 0) {
         write_line("worst learn", machine_instructions(worst_of_cases(&controller, machine_count)));
         write_line("worst paper",

@@ -9,9 +9,8 @@ static struct grrl_graph state;
 
 static void make_context(struct grrl_context *context)
 {
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++) {
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         context->part[i] = (uint8_t)grrl_random_below(&random, grrl_context_most[i] + 1u);
-    }
 }
 
 uint32_t worst_of_cases(struct onboard_controller *controller, uint32_t (*count)(void))
@@ -29,9 +28,8 @@ uint32_t worst_of_cases(struct onboard_controller *controller, uint32_t (*count)
     }
     contexts.n_links = GRRL_MAX_LINKS;
     for (int i = 0; i < ROUNDS; i++) {
-        for (unsigned action = 0; action < GRRL_MAX_LINKS * GRRL_DIRECTIONS; action++) {
+        for (unsigned action = 0; action < GRRL_MAX_LINKS * GRRL_DIRECTIONS; action++)
             make_context(&contexts.action[action / GRRL_DIRECTIONS][action % GRRL_DIRECTIONS]);
-        }
         uint32_t start = count();
         grrl_policy_choose_by_cases(&config, base, &contexts, &random, &choice);
         (void)grrl_cases_learn(base, &config.cases, &contexts.action[choice.link][choice.direction],

@@ -74,12 +74,11 @@ public:
         now_us_ = now_us;
         std::vector<Delayed> waiting;
         waiting.swap(delayed_);
-        for (const Delayed &message : waiting) {
+        for (const Delayed &message : waiting)
             if (message.due_us <= now_us)
                 publish(message);
             else
                 delayed_.push_back(message);
-        }
     }
 
     const Counts &counts() const { return counts_; }
