@@ -16,7 +16,7 @@
 
 #include <lcm/lcm.h>
 
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 #include "wire.h"
 
 enum grrl_agent_event_kind {

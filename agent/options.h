@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 
 struct grrl_agent_options {
     struct grrl_learner_config learner;

@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 
 /* As POSIX has them, with -1 and errno for a failure. */
 struct grrl_file_calls {

@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-#include "grrl/match.h"
-#include "grrl/random.h"
+#include "grrl/structure/match.h"
+#include "grrl/base/random.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "bench.h"
-#include "grrl/experience.h"
+#include "grrl/learner/relational_q/experience.h"
 
 enum { N_OBJECTS = 60, N_UPDATES = 60000, NEVER = N_UPDATES };
 

@@ -3,7 +3,7 @@
 #include <time.h>
 
 #include "bench.h"
-#include "grrl/canonical.h"
+#include "grrl/structure/canonical.h"
 
 double bench_now_ns(void)
 {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "bench.h"
-#include "grrl/experience.h"
+#include "grrl/learner/relational_q/experience.h"
 
 enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4 };
 

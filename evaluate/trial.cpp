@@ -8,8 +8,8 @@
 #include "belief.hpp"
 
 extern "C" {
-#include "grrl/grounding.h"
-#include "grrl/perception.h"
+#include "grrl/learner/grounding.h"
+#include "grrl/perception/perception.h"
 }
 
 namespace grrl_evaluate

@@ -4,9 +4,9 @@
 
 extern "C" {
 #include "agent.h"
-#include "grrl/experience.h"
-#include "grrl/learner.h"
-#include "grrl/perception.h"
+#include "grrl/learner/relational_q/experience.h"
+#include "grrl/learner/learner.h"
+#include "grrl/perception/perception.h"
 }
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "grrl/config.h"
+#include "grrl/base/config.h"
 
 _Static_assert(GRRL_WIRE_MAX_POINTS >= GRRL_MAX_FEATURES, "every feature fits a points_t");
 _Static_assert(GRRL_WIRE_MAX_LINKS >= GRRL_MAX_LINKS, "every link fits a model_t");

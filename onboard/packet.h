@@ -24,7 +24,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 
 /* How many cases and how many experiences a controller remembers, and states these are made in; a
  * state for each is the most that can be needed. */

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/types.h>
 
-#include "grrl/geometry.h"
+#include "grrl/base/geometry.h"
 
 struct reader {
     const char *path;

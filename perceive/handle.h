@@ -7,7 +7,7 @@
 
 #include "tracks.h"
 
-#include "grrl/trajectory.h"
+#include "grrl/perception/trajectory.h"
 
 /* A trajectory with the storage its rows point to, which grrl_handle_free releases. */
 struct grrl_handle {

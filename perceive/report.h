@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "grrl/perception.h"
+#include "grrl/perception/perception.h"
 
 struct grrl_report {
     const struct grrl_model *model;

@@ -3,12 +3,12 @@
 #define GRRL_SIM_GRRL_C_HPP
 
 extern "C" {
-#include "grrl/config.h"
-#include "grrl/graph.h"
-#include "grrl/match.h"
-#include "grrl/random.h"
-#include "grrl/status.h"
-#include "grrl/term.h"
+#include "grrl/base/config.h"
+#include "grrl/structure/graph.h"
+#include "grrl/structure/match.h"
+#include "grrl/base/random.h"
+#include "grrl/base/status.h"
+#include "grrl/structure/term.h"
 }
 
 #endif

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "grrl/perception.h"
+#include "grrl/perception/perception.h"
 
 /*
  * A chain of links whose joints are hidden at first. Pushing a body that hides joints across

@@ -8,10 +8,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "grrl/canonical.h"
-#include "grrl/graph.h"
-#include "grrl/match.h"
-#include "grrl/term.h"
+#include "grrl/structure/canonical.h"
+#include "grrl/structure/graph.h"
+#include "grrl/structure/match.h"
+#include "grrl/structure/term.h"
 
 #ifndef GRRL_VERSION
 #error "GRRL_VERSION comes from the build"

@@ -11,7 +11,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "grrl/random.h"
+#include "grrl/base/random.h"
 #include "server.h"
 
 static struct onboard_controller controller;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "grrl/random.h"
+#include "grrl/base/random.h"
 #include "wire.h"
 
 enum { PAUSE_NS = 500000, MOST_BYTES = 600 };

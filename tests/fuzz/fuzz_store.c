@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 
 enum { CAPACITY = 24, MOST_BYTES = 32768, POINTS = 16, TURNS = 8 };
 

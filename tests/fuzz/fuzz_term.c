@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "grrl/canonical.h"
-#include "grrl/graph.h"
-#include "grrl/term.h"
+#include "grrl/structure/canonical.h"
+#include "grrl/structure/graph.h"
+#include "grrl/structure/term.h"
 
 enum { NODES = 2048, TEXT_BYTES = 65536, BUDGET = 20000 };
 

@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 #include "controller.h"
-#include "grrl/learner.h"
+#include "grrl/learner/learner.h"
 #include "link.h"
 #include "wire.h"
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "grrl/random.h"
+#include "grrl/base/random.h"
 #include "link.h"
 
 static struct onboard_receiver receiver;

@@ -12,7 +12,7 @@
 #include <lcm/lcm.h>
 
 extern "C" {
-#include "grrl/random.h"
+#include "grrl/base/random.h"
 #include "wire.h"
 }
 

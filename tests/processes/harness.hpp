@@ -21,7 +21,7 @@ extern "C" {
 #include <cmocka.h>
 
 #include "agent.h"
-#include "grrl/experience.h"
+#include "grrl/learner/relational_q/experience.h"
 }
 
 namespace harness

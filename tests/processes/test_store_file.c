@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "disk.h"
-#include "grrl/learner.h"
-#include "grrl/random.h"
+#include "grrl/learner/learner.h"
+#include "grrl/base/random.h"
 #include "store_check.h"
 
 #define PATH "folder/kept.store"

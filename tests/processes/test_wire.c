@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "grrl/random.h"
+#include "grrl/base/random.h"
 
 static struct grrl_wire_why why;
 

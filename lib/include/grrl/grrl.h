@@ -2,26 +2,26 @@
 #ifndef GRRL_GRRL_H
 #define GRRL_GRRL_H
 
-#include "grrl/config.h"
-#include "grrl/random.h"
-#include "grrl/status.h"
+#include "grrl/base/config.h"
+#include "grrl/base/random.h"
+#include "grrl/base/status.h"
 /* structures */
-#include "grrl/canonical.h"
-#include "grrl/graph.h"
-#include "grrl/match.h"
-#include "grrl/signature.h"
-#include "grrl/term.h"
+#include "grrl/structure/canonical.h"
+#include "grrl/structure/graph.h"
+#include "grrl/structure/match.h"
+#include "grrl/structure/signature.h"
+#include "grrl/structure/term.h"
 /* the world */
-#include "grrl/geometry.h"
-#include "grrl/grounding.h"
-#include "grrl/noise.h"
-#include "grrl/perception.h"
-#include "grrl/trajectory.h"
+#include "grrl/base/geometry.h"
+#include "grrl/learner/grounding.h"
+#include "grrl/perception/noise.h"
+#include "grrl/perception/perception.h"
+#include "grrl/perception/trajectory.h"
 /* learning */
-#include "grrl/case_base.h"
-#include "grrl/context.h"
-#include "grrl/experience.h"
-#include "grrl/learner.h"
-#include "grrl/policy.h"
+#include "grrl/learner/cases/case_base.h"
+#include "grrl/learner/cases/context.h"
+#include "grrl/learner/relational_q/experience.h"
+#include "grrl/learner/learner.h"
+#include "grrl/learner/policy.h"
 
 #endif

@@ -1,0 +1,233 @@
+/*
+ * perception.h: from tracked feature points to links and joints (paper, section IV).
+ *
+ * Points come in frame by frame, with nothing but an id and a position in the table plane. Frames
+ * at rest and frames of a push are averaged into keyframes; the keyframes of a trial are the
+ * evidence. From them grrl_perception_update finds the bodies (sets of features that move as one
+ * rigid body) and, for each pair that moved relative to one another, a revolute or prismatic joint
+ * where the motion supports one. Evidence accumulates over the pushes of a trial and may overturn
+ * an earlier answer. docs/perception.md has the method.
+ *
+ * Order of calls: grrl_perception_init once; for each object grrl_perception_reset; frames by
+ * grrl_perception_observe; at rest after each push grrl_perception_update, then
+ * grrl_perception_model.
+ */
+#ifndef GRRL_PERCEPTION_H
+#define GRRL_PERCEPTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "grrl/base/config.h"
+#include "grrl/base/geometry.h"
+#include "grrl/structure/graph.h"
+#include "grrl/base/status.h"
+
+/* The points visible at one time: table plane, right-handed, metres. Ids are any numbers that stay
+ * with a feature; their order means nothing. */
+struct grrl_frame {
+    uint32_t n;
+    const int32_t *id;
+    const float *x_m;
+    const float *y_m;
+};
+
+/* Fill with grrl_perception_config_default, then change what differs. */
+struct grrl_perception_config {
+    float noise_m;       /* standard deviation of a point in one frame, per axis; 0.0007 */
+    float model_error_m; /* what rigidity and joints may be off, per axis; 0.0001 */
+    float keyframe_m;    /* how far features move in a push until the next keyframe; 0.008 */
+    float jump_m;        /* a point that moved farther in one frame is an outlier; 0.015 */
+    float table_m;       /* points beyond this distance from the origin are refused; 100 */
+    float min_turn_rad;  /* relative rotation below this supports no joint type; 0.035 */
+    float min_slide_m;   /* relative sliding below this supports no joint type; 0.00175 */
+    float pivot_scale_m; /* pivots farther than this from their bodies are unlikely; 0.1 */
+    float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
+    float large_m;       /* links at least this long have the property large; 0.15 */
+    float
+        slack; /* how much more than noise a split needs, >= 1; 1. Pictures are no exact plane: 4 */
+    uint8_t min_features;   /* fewer features are no body; 4 */
+    bool static_background; /* what is sparse at first sight and never moves is background; true.
+                               false: all that is seen may be a body, as from a moving camera */
+};
+
+/* What a feature belongs to, when it is no body's. */
+enum { GRRL_FEATURE_BACKGROUND = 0xfe, GRRL_FEATURE_NONE = 0xff };
+
+/* A link: its features' point cloud now, in the world frame. */
+struct grrl_body {
+    uint16_t number; /* stays with the body for the trial: the n of its grounding set fn */
+    uint16_t n_features;
+    struct grrl_vec2 centroid_m;
+    struct grrl_vec2 axis; /* unit vector along the principal axis, without a meaningful sign */
+    float length_m;        /* extent of the cloud along the axis */
+    float width_m;         /* and across */
+    grrl_label properties; /* byte 0: GRRL_PROPERTY_SMALL or GRRL_PROPERTY_LARGE */
+};
+
+/* A joint between bodies a < b (indices), as it lies now in the world frame. */
+struct grrl_joint {
+    uint8_t a;
+    uint8_t b;
+    uint8_t type;      /* enum grrl_joint_type */
+    float probability; /* of this type, given the evidence */
+    float p_revolute;  /* and of each possibility; their sum is 1 */
+    float p_prismatic;
+    float p_disconnected;
+    struct grrl_vec2 point_m; /* the pivot; a point on the sliding axis */
+    float point_cov_m2[3];    /* its covariance xx, xy, yy; for a prismatic joint across the axis */
+    struct grrl_vec2 axis;    /* unit vector of sliding; (0, 0) for a revolute joint */
+    float axis_sd_rad;        /* standard deviation of its direction */
+    float lower;              /* smallest and largest excursion seen from the first keyframe, */
+    float upper;              /* radians (b relative to a) or metres (along the axis) */
+};
+
+/* What is known of two bodies. Features of one body are rigid; the rest of the answers is here. */
+enum grrl_relation {
+    GRRL_RELATION_UNDETERMINED, /* they moved too little, or in too few ways, to tell */
+    GRRL_RELATION_DISCONNECTED, /* with a probability of 0.95 and more */
+    GRRL_RELATION_JOINED        /* by a joint of the model */
+};
+
+/* The evidence of two bodies' motion alone; the three probabilities sum to 1. Without a motion that
+ * tells they are a third each. The structure of all may refuse what a pair suggests. */
+struct grrl_pair {
+    uint8_t relation; /* enum grrl_relation */
+    float p_revolute;
+    float p_prismatic;
+    float p_disconnected;
+};
+
+/* Everything perception believes. Bodies and joints are in order of discovery. */
+struct grrl_model {
+    uint8_t n_bodies;
+    uint8_t n_joints;
+    uint16_t n_features;
+    struct grrl_body body[GRRL_MAX_LINKS];
+    struct grrl_joint joint[GRRL_MAX_JOINTS];
+    int32_t feature_id[GRRL_MAX_FEATURES];
+    struct grrl_vec2 feature_m[GRRL_MAX_FEATURES]; /* now, or where it was last seen */
+    uint8_t feature_body[GRRL_MAX_FEATURES];       /* a body's index or GRRL_FEATURE_.. */
+};
+
+struct grrl_perception_counts {
+    uint32_t frames;
+    uint32_t outliers;       /* points that jumped, dropped */
+    uint32_t refused;        /* points that were not finite or off the table */
+    uint32_t overflow;       /* features beyond GRRL_MAX_FEATURES, dropped */
+    uint32_t thinned;        /* keyframes dropped to make room for newer ones */
+    uint16_t features_high;  /* most features at a time */
+    uint16_t keyframes_high; /* most keyframes at a time */
+};
+
+/* private: points being averaged */
+struct grrl_perception_sum {
+    float x;
+    float y;
+    uint8_t n;
+};
+
+/* private: each feature's points of a window, in two heaps: an outlier founds one of its own */
+struct grrl_perception_window {
+    struct grrl_perception_sum heap[2][GRRL_MAX_FEATURES];
+    uint8_t frames;
+};
+
+/* private: one averaged picture of all features */
+struct grrl_perception_keyframe {
+    struct grrl_vec2 point[GRRL_MAX_FEATURES];
+    uint8_t weight[GRRL_MAX_FEATURES]; /* frames averaged, 0: not seen */
+    bool at_rest;
+    bool examined; /* for outliers */
+};
+
+/* private: a body's pose in one keyframe, in units of one frame's noise */
+struct grrl_perception_pose {
+    struct grrl_pose pose;
+    float mass;    /* sum of its features' weights, 0: not seen */
+    float inertia; /* sum of weight times squared distance from the centroid, m^2 */
+};
+
+struct grrl_perception {
+    struct grrl_perception_config config;
+    struct grrl_perception_counts counts;
+
+    /* private: tracks, by slot */
+    uint16_t n_slots;
+    uint16_t slot_of_hash[4 * GRRL_MAX_FEATURES]; /* open addressing by id, slot + 1 */
+    int32_t id[GRRL_MAX_FEATURES];
+    struct grrl_vec2 last[GRRL_MAX_FEATURES];
+    struct grrl_vec2 before[GRRL_MAX_FEATURES]; /* the last, where it was seen */
+    uint32_t last_frame[GRRL_MAX_FEATURES];
+    uint8_t jumps[GRRL_MAX_FEATURES];
+    uint8_t body_of[GRRL_MAX_FEATURES];
+    uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
+    float reach2_m2; /* features of one object lie closer, squared; at first sight */
+    bool has_moved[GRRL_MAX_FEATURES]; /* at any time since the first keyframe */
+
+    /* private: keyframes */
+    struct grrl_perception_window window;
+    bool moving;
+    uint8_t n_keyframes;
+    bool rest_open; /* the last keyframe is the rest being averaged */
+    struct grrl_perception_keyframe keyframe[GRRL_MAX_KEYFRAMES];
+
+    /* private: bodies */
+    uint8_t n_bodies;
+    uint16_t n_numbers;
+    uint16_t number[GRRL_MAX_LINKS];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+    float bend_m2[GRRL_MAX_LINKS]; /* variance of a body's residuals beyond noise, per axis */
+
+    /* private: the answer */
+    struct grrl_model model;
+};
+
+/* A tracker in metres above a table, with a background at rest. */
+void grrl_perception_config_default(struct grrl_perception_config *config);
+
+/*
+ * A camera that may move: points in pixels, given as if a pixel were pixel_m metres wide (0.001
+ * will do). Perspective and depth make the planar rigid model fail a little: a larger model error,
+ * slack, and no static background.
+ */
+void grrl_perception_config_camera(struct grrl_perception_config *config, float pixel_m);
+
+/* GRRL_ERR_ARGUMENT for a configuration that is not finite or out of range. */
+GRRL_MUST_USE enum grrl_status grrl_perception_init(struct grrl_perception *perception,
+                                                    const struct grrl_perception_config *config);
+
+/* Forgets the object: what follows is a new one. The counts go on. */
+void grrl_perception_reset(struct grrl_perception *perception);
+
+/*
+ * Takes one frame. pushing: the robot is acting, things move. Points that are not finite or off the
+ * table are refused and counted, never an error. Cost: linear in the points.
+ */
+void grrl_perception_observe(struct grrl_perception *perception, const struct grrl_frame *frame,
+                             bool pushing);
+
+/*
+ * Works out bodies and joints from all keyframes, the frames at rest since the last push included.
+ * GRRL_ERR_NONE: no feature was seen yet. Cost: a few passes over features x bodies x keyframes.
+ */
+GRRL_MUST_USE enum grrl_status grrl_perception_update(struct grrl_perception *perception);
+
+/* The result of the last update; empty before the first. */
+const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception);
+
+/*
+ * What the last update knows of bodies a and b (indices of the model). GRRL_ERR_ARGUMENT: there are
+ * no two such bodies. To be called before further frames. Cost: linear in keyframes and features.
+ */
+GRRL_MUST_USE enum grrl_status grrl_perception_pair(const struct grrl_perception *perception,
+                                                    uint8_t a, uint8_t b, struct grrl_pair *pair);
+
+/* The structure of a model: vertex i is body i, edge order is the order of discovery. names and
+ * edges as in grrl_graph_from_term; either may be NULL. */
+void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
+                      struct grrl_name *names, struct grrl_edge *edges);
+
+#endif

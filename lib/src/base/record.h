@@ -1,0 +1,41 @@
+/*
+ * record.h: the files of the library are sequences of records, little-endian whatever the machine,
+ * each followed by a CRC-32 that runs on from the one before, so that records cannot be exchanged.
+ */
+#ifndef GRRL_RECORD_H
+#define GRRL_RECORD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "grrl/base/config.h"
+#include "grrl/learner/relational_q/experience.h"
+#include "grrl/base/status.h"
+
+enum { GRRL_RECORD_BYTES = 32 + 16 * GRRL_MAX_LINKS, GRRL_RECORD_CRC_BYTES = 4 };
+
+/* One record on its way out of or into a file, and the CRC so far. */
+struct grrl_record {
+    const struct grrl_experience_io *io;
+    uint32_t crc;
+    size_t n; /* bytes put, or taken */
+    uint8_t bytes[GRRL_RECORD_BYTES + GRRL_RECORD_CRC_BYTES];
+};
+
+/* Appends the lowest `bytes` bytes of a number. */
+void grrl_record_put(struct grrl_record *record, uint64_t value, unsigned bytes);
+void grrl_record_put_float(struct grrl_record *record, float value);
+
+/* Writes what was put and the CRC, and starts the next record. GRRL_ERR_IO. */
+GRRL_MUST_USE enum grrl_status grrl_record_write(struct grrl_record *record);
+
+/* Reads `bytes` more, behind what was taken. GRRL_ERR_IO. */
+GRRL_MUST_USE enum grrl_status grrl_record_read(struct grrl_record *record, size_t bytes);
+
+uint64_t grrl_record_take(struct grrl_record *record, unsigned bytes);
+float grrl_record_take_float(struct grrl_record *record);
+
+/* Compares the CRC behind a record of `bytes` and starts the next. GRRL_ERR_CORRUPT. */
+GRRL_MUST_USE enum grrl_status grrl_record_check(struct grrl_record *record, size_t bytes);
+
+#endif

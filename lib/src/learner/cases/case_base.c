@@ -1,0 +1,237 @@
+#include "grrl/learner/cases/case_base.h"
+
+#include <string.h>
+
+#include "grrl/base/geometry.h"
+
+/* Nothing is impossible, whatever the rewards met. */
+#define LEAST_EXPECTED 0.05f
+
+/* So that a few pushes as known undo it. */
+#define LEAST_LOG_ODDS (-4.0f)
+
+void grrl_case_config_default(struct grrl_case_config *config)
+{
+    *config = (struct grrl_case_config){.prior = 0.5f,
+                                        .prior_weight = 1.0f,
+                                        .mismatch = 0.2f,
+                                        .bound = 0.4f,
+                                        .confidence = 0.5f,
+                                        .present = 3.0f,
+                                        .memory = 5,
+                                        .parts = GRRL_ALL_CONTEXT_PARTS};
+}
+
+/* Written so that a NaN is in no range. */
+static bool is_within(float x, float low, float high)
+{
+    return x >= low && x <= high;
+}
+
+enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, const char **field)
+{
+    const struct {
+        const char *name;
+        bool fine;
+    } checks[] = {
+        {"cases.prior", is_within(config->prior, -GRRL_MAX_REWARD, GRRL_MAX_REWARD)},
+        {"cases.prior_weight", is_within(config->prior_weight, 0.001f, GRRL_MAX_REWARD)},
+        {"cases.mismatch", is_within(config->mismatch, 0.0f, 1.0f)},
+        {"cases.bound", is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
+        {"cases.confidence", is_within(config->confidence, 0.0f, GRRL_MAX_REWARD)},
+        {"cases.present", is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
+        {"cases.memory", config->memory >= 1},
+        {"cases.parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
+    };
+    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; i++) {
+        if (!checks[i].fine) {
+            if (field != NULL)
+                *field = checks[i].name;
+            return GRRL_ERR_ARGUMENT;
+        }
+    }
+    return GRRL_OK;
+}
+
+void grrl_cases_init(struct grrl_case_base *base, struct grrl_case *cases, uint32_t capacity)
+{
+    *base = (struct grrl_case_base){.capacity = capacity, .cases = cases};
+}
+
+void grrl_cases_clear(struct grrl_case_base *base)
+{
+    grrl_cases_init(base, base->cases, base->capacity);
+}
+
+static unsigned at_most(unsigned x, unsigned most)
+{
+    return x < most ? x : most;
+}
+
+/* How likely it is that the object is as known. */
+static float trust(const struct grrl_case_base *base)
+{
+    return 1.0f / (1.0f + grrl_exp(-base->log_odds));
+}
+
+static unsigned nearest(float x)
+{
+    return (unsigned)(x + 0.5f);
+}
+
+/* Joins the rewards of the last trial to the older ones, the latest `memory` of all. Of the older
+ * ones the share `kept` counts on, though one at least; the newer ones count as in the trial as far
+ * as older ones do not. */
+static void join_rewards(const struct grrl_case_config *config, float kept, struct grrl_case *met)
+{
+    float times = 1.0f + config->present * (1.0f - kept);
+    unsigned newer = at_most(nearest((float)met->n_new * times), config->memory);
+    unsigned older = met->n > 0 ? 1u + nearest((float)(met->n - 1) * kept) : 0u;
+    older = at_most(older, config->memory - newer);
+    if (newer > 0) {
+        float sum = (float)older * met->value + (float)newer * met->value_new;
+        met->value = sum / (float)(older + newer);
+    }
+    met->n = (uint8_t)(older + newer);
+    met->n_new = 0;
+    met->value_new = 0.0f;
+}
+
+void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config)
+{
+    if (base->n == 0)
+        return;
+    float kept = base->log_odds < 0.0f ? 2.0f * trust(base) : 1.0f;
+    for (uint32_t i = 0; i < base->n; i++)
+        join_rewards(config, kept, &base->cases[i]);
+    base->log_odds = config->confidence;
+}
+
+static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_context *b,
+                                uint16_t parts)
+{
+    uint8_t n = 0;
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        if (((uint32_t)parts >> i & 1u) != 0 && a->part[i] != b->part[i])
+            n++;
+    return n;
+}
+
+/* The rewards met, each by how much it says of one context. */
+struct evidence {
+    float older; /* their weight */
+    float newer;
+    float older_sum; /* of rewards times their weight */
+    float newer_sum;
+};
+
+/* Also finds the closest case, for the estimate. */
+static void gather(const struct grrl_case_base *base, const struct grrl_case_config *config,
+                   const struct grrl_context *context, struct evidence *evidence,
+                   struct grrl_estimate *estimate)
+{
+    float weight_of[GRRL_CONTEXT_PARTS + 1] = {1.0f};
+    for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; i++)
+        weight_of[i] = weight_of[i - 1] * config->mismatch;
+    float trusted = trust(base);
+    float closest_weight = 0.0f;
+    *evidence = (struct evidence){.older = 0.0f};
+    *estimate = (struct grrl_estimate){.closest = GRRL_NO_CASE, .mismatches = UINT8_MAX};
+    for (uint32_t i = 0; i < base->n; i++) {
+        const struct grrl_case *met = &base->cases[i];
+        uint8_t mismatches = count_mismatches(&met->context, context, config->parts);
+        float older = (float)at_most(met->n, config->memory);
+        float newer = (1.0f + config->present) * (float)met->n_new;
+        evidence->older += weight_of[mismatches] * older;
+        evidence->newer += weight_of[mismatches] * newer;
+        evidence->older_sum += weight_of[mismatches] * older * met->value;
+        evidence->newer_sum += weight_of[mismatches] * newer * met->value_new;
+        float weight = trusted * older + newer;
+        if (mismatches < estimate->mismatches ||
+            (mismatches == estimate->mismatches && weight > closest_weight)) {
+            estimate->mismatches = mismatches;
+            estimate->closest = i;
+            closest_weight = weight;
+        }
+    }
+}
+
+/* The mean over the prior and the rewards, the older ones as much as they are trusted. */
+static float mean(const struct grrl_case_config *config, const struct evidence *evidence,
+                  float trusted)
+{
+    float sum = config->prior_weight * config->prior + trusted * evidence->older_sum;
+    float weight = config->prior_weight + trusted * evidence->older;
+    return (sum + evidence->newer_sum) / (weight + evidence->newer);
+}
+
+void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
+                         const struct grrl_context *context, struct grrl_estimate *estimate)
+{
+    struct evidence evidence;
+    gather(base, config, context, &evidence, estimate);
+    float trusted = trust(base);
+    float weight = config->prior_weight + trusted * evidence.older + evidence.newer;
+    float reach = config->bound / grrl_sqrt(weight);
+    estimate->value = mean(config, &evidence, trusted);
+    estimate->lower = estimate->value - reach;
+    estimate->upper = estimate->value + reach;
+    estimate->weight = weight;
+}
+
+/* The log likelihood that a push finds something, or nothing, when so much is expected: what it
+ * finds is a count (of links and joints), taken for Poisson. */
+static float log_likelihood(float expected, bool found)
+{
+    float rate = expected > LEAST_EXPECTED ? expected : LEAST_EXPECTED;
+    return found ? grrl_log(1.0f - grrl_exp(-rate)) : -rate;
+}
+
+/* Weighs "as known" against "another" by what a push found. Not how much: a first push that reveals
+ * four links instead of two is no sign of another object. */
+static void weigh(struct grrl_case_base *base, const struct grrl_case_config *config,
+                  const struct grrl_context *context, float reward)
+{
+    struct evidence evidence;
+    struct grrl_estimate estimate;
+    gather(base, config, context, &evidence, &estimate);
+    bool found = reward > 0.0f;
+    float log_odds = base->log_odds + log_likelihood(mean(config, &evidence, 1.0f), found) -
+                     log_likelihood(mean(config, &evidence, 0.0f), found);
+    log_odds = log_odds > config->confidence ? config->confidence : log_odds;
+    base->log_odds = log_odds < LEAST_LOG_ODDS ? LEAST_LOG_ODDS : log_odds;
+}
+
+/* The case of exactly this context, or a new one without rewards. */
+static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_context *context)
+{
+    uint32_t oldest = 0;
+    for (uint32_t i = 0; i < base->n; i++) {
+        if (memcmp(&base->cases[i].context, context, sizeof *context) == 0)
+            return i;
+        if (base->cases[i].used_at < base->cases[oldest].used_at)
+            oldest = i;
+    }
+    if (base->n < base->capacity) {
+        oldest = base->n++;
+        base->high_water = base->n > base->high_water ? base->n : base->high_water;
+    } else {
+        base->evictions++;
+    }
+    base->cases[oldest] = (struct grrl_case){.context = *context};
+    return oldest;
+}
+
+uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
+                          const struct grrl_context *context, float reward)
+{
+    weigh(base, config, context, reward);
+    if (base->capacity == 0)
+        return GRRL_NO_CASE;
+    uint32_t index = find_or_add(base, context);
+    struct grrl_case *met = &base->cases[index];
+    met->n_new = (uint8_t)at_most(met->n_new + 1u, config->memory);
+    met->value_new += (reward - met->value_new) / (float)met->n_new;
+    met->used_at = ++base->clock;
+    return index;
+}

@@ -1,0 +1,178 @@
+#include "grrl/learner/cases/context.h"
+
+#include <string.h>
+
+#include "grrl/base/geometry.h"
+#include "grrl/structure/graph.h"
+#include "grrl/learner/grounding.h"
+
+/* A neighbour lies ahead or behind within about 70 degrees of the push. */
+#define AHEAD_COSINE 0.35f
+
+/* Shorter differences of length may be noise. */
+#define LONGER 1.15f
+
+enum { AHEAD = 1, BEHIND = 2 };
+enum { MOST_TRIED = 3, MOST_JOINTS = 2, MOST_OTHERS_TRIED = 2, MOST_LONGER = 2, MOST_OCTAVE = 4 };
+
+const uint8_t grrl_context_most[GRRL_CONTEXT_PARTS] = {
+    [GRRL_CONTEXT_DIRECTION] = 2,
+    [GRRL_CONTEXT_LENGTH] = MOST_OCTAVE,
+    [GRRL_CONTEXT_TRIED] = MOST_TRIED,
+    [GRRL_CONTEXT_NEIGHBOURS] = AHEAD | BEHIND,
+    [GRRL_CONTEXT_NEIGHBOUR_LENGTH] = 1 + MOST_OCTAVE,
+    [GRRL_CONTEXT_REVOLUTE] = MOST_JOINTS,
+    [GRRL_CONTEXT_PRISMATIC] = MOST_JOINTS,
+    [GRRL_CONTEXT_OTHERS_TRIED] = MOST_OTHERS_TRIED,
+    [GRRL_CONTEXT_LONGER] = MOST_LONGER,
+};
+
+static uint8_t at_most(unsigned x, unsigned most)
+{
+    return (uint8_t)(x < most ? x : most);
+}
+
+static uint8_t octave(float length_m, float large_m)
+{
+    uint8_t octave = 0;
+    for (float limit = 0.6f * large_m; octave < MOST_OCTAVE && length_m >= limit; limit *= 2.0f)
+        octave++;
+    return octave;
+}
+
+static bool joins(const struct grrl_joint *joint, uint8_t body)
+{
+    return joint->a == body || joint->b == body;
+}
+
+static void count_joints(const struct grrl_model *model, uint8_t body,
+                         uint8_t count[GRRL_JOINT_TYPES])
+{
+    memset(count, 0, GRRL_JOINT_TYPES);
+    for (uint8_t j = 0; j < model->n_joints; j++)
+        count[model->joint[j].type] += joins(&model->joint[j], body);
+}
+
+static struct grrl_attempts *find(struct grrl_trial_attempts *attempts, uint16_t number)
+{
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (attempts->link[i].number == number)
+            return &attempts->link[i];
+    return NULL;
+}
+
+static bool is_seen(const struct grrl_model *model, uint16_t number)
+{
+    for (uint8_t i = 0; i < model->n_bodies; i++)
+        if (model->body[i].number == number)
+            return true;
+    return false;
+}
+
+void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
+                        float large_m)
+{
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (!is_seen(model, attempts->link[i].number))
+            memset(&attempts->link[i], 0, sizeof attempts->link[i]);
+    for (uint8_t i = 0; i < model->n_bodies; i++) {
+        struct grrl_attempts now = {.number = model->body[i].number,
+                                    .length = octave(model->body[i].length_m, large_m)};
+        count_joints(model, i, now.joints);
+        struct grrl_attempts *link = find(attempts, now.number);
+        if (link == NULL)
+            link = find(attempts, 0); /* one is free: at most GRRL_MAX_LINKS bodies are seen */
+        if (link->number != now.number || link->length != now.length ||
+            memcmp(link->joints, now.joints, sizeof now.joints) != 0)
+            *link = now;
+    }
+}
+
+void grrl_attempts_add(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
+                       uint8_t body, uint8_t direction)
+{
+    struct grrl_attempts *link = find(attempts, model->body[body].number);
+    if (link != NULL && link->tried[direction] < UINT8_MAX)
+        link->tried[direction]++;
+}
+
+/* What the directions of one body have in common. */
+static void describe(const struct grrl_model *model, float large_m, uint8_t body,
+                     struct grrl_context *context)
+{
+    const struct grrl_body *self = &model->body[body];
+    uint8_t joints[GRRL_JOINT_TYPES];
+    unsigned longer = 0;
+    uint8_t longest = 0;
+    count_joints(model, body, joints);
+    for (uint8_t i = 0; i < model->n_bodies; i++)
+        longer += model->body[i].length_m > LONGER * self->length_m;
+    for (uint8_t j = 0; j < model->n_joints; j++) {
+        const struct grrl_joint *joint = &model->joint[j];
+        if (joins(joint, body)) {
+            uint8_t other = joint->a == body ? joint->b : joint->a;
+            uint8_t length = (uint8_t)(1 + octave(model->body[other].length_m, large_m));
+            longest = length > longest ? length : longest;
+        }
+    }
+    memset(context, 0, sizeof *context);
+    context->part[GRRL_CONTEXT_LENGTH] = octave(self->length_m, large_m);
+    context->part[GRRL_CONTEXT_NEIGHBOUR_LENGTH] = longest;
+    context->part[GRRL_CONTEXT_REVOLUTE] = at_most(joints[GRRL_REVOLUTE], MOST_JOINTS);
+    context->part[GRRL_CONTEXT_PRISMATIC] = at_most(joints[GRRL_PRISMATIC], MOST_JOINTS);
+    context->part[GRRL_CONTEXT_LONGER] = at_most(longer, MOST_LONGER);
+}
+
+/* Where the neighbours lie, seen along a push. */
+static uint8_t neighbours_along(const struct grrl_model *model, uint8_t body,
+                                struct grrl_vec2 direction)
+{
+    unsigned where = 0;
+    for (uint8_t j = 0; j < model->n_joints; j++) {
+        const struct grrl_joint *joint = &model->joint[j];
+        if (!joins(joint, body))
+            continue;
+        uint8_t other = joint->a == body ? joint->b : joint->a;
+        struct grrl_vec2 arm =
+            grrl_vec2_sub(model->body[other].centroid_m, model->body[body].centroid_m);
+        float along = grrl_vec2_dot(arm, direction);
+        float reach = AHEAD_COSINE * grrl_vec2_length(arm);
+        where |= along > reach ? (unsigned)AHEAD : 0u;
+        where |= along < -reach ? (unsigned)BEHIND : 0u;
+    }
+    return (uint8_t)where;
+}
+
+/* 0 along the axis, 1 at 45 degrees to it, 2 across. */
+static uint8_t slant(int degrees)
+{
+    return (uint8_t)(degrees % 180 / 45);
+}
+
+enum grrl_status grrl_context_of(const struct grrl_trial_attempts *attempts,
+                                 const struct grrl_model *model, float large_m, uint8_t body,
+                                 struct grrl_context contexts[GRRL_DIRECTIONS])
+{
+    struct grrl_link_frame frame;
+    if (grrl_grounding_frame(model, body, &frame) != GRRL_OK)
+        return GRRL_ERR_ARGUMENT;
+    const struct grrl_attempts *link = NULL;
+    unsigned all_tried = 0;
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        if (attempts->link[i].number == model->body[body].number)
+            link = &attempts->link[i];
+    for (uint8_t d = 0; d < GRRL_DIRECTIONS && link != NULL; d++)
+        all_tried += link->tried[d];
+    struct grrl_context common;
+    describe(model, large_m, body, &common);
+    for (uint8_t d = 0; d < GRRL_DIRECTIONS; d++) {
+        unsigned tried = link != NULL ? link->tried[d] : 0;
+        contexts[d] = common;
+        contexts[d].part[GRRL_CONTEXT_DIRECTION] = slant(grrl_direction_deg[d]);
+        contexts[d].part[GRRL_CONTEXT_TRIED] = at_most(tried, MOST_TRIED);
+        contexts[d].part[GRRL_CONTEXT_OTHERS_TRIED] = at_most(all_tried - tried, MOST_OTHERS_TRIED);
+        contexts[d].part[GRRL_CONTEXT_NEIGHBOURS] =
+            neighbours_along(model, body, grrl_grounding_direction(&frame, d));
+    }
+    return GRRL_OK;
+}

@@ -1,0 +1,119 @@
+#include <assert.h>
+#include <string.h>
+
+#include "learner/relational_q/closest.h"
+#include "learner/relational_q/experience_private.h"
+
+/* Links and joints of each type, the lowest counts of a signature. */
+#define SIZE_BYTES UINT64_C(0xffffff)
+
+static uint64_t size_of(unsigned links, unsigned revolute, unsigned prismatic)
+{
+    return links | (uint64_t)revolute << 8 | (uint64_t)prismatic << 16;
+}
+
+static uint32_t cell_of(uint64_t counts)
+{
+    uint32_t spread = (uint32_t)(counts & SIZE_BYTES) * UINT32_C(0x9e3779b1);
+    return (uint32_t)((uint64_t)spread * GRRL_EXPERIENCE_CELLS >> 32);
+}
+
+void grrl_experience_index_clear(struct grrl_experience_index *index)
+{
+    memset(index->start, 0, sizeof index->start);
+    memset(index->most, 0, sizeof index->most);
+}
+
+/* Each cell behind makes room by giving its first row a place at its end. */
+void grrl_experience_index_add(struct grrl_experience_index *index,
+                               const struct grrl_experience_state *state, uint32_t number)
+{
+    uint64_t counts = state->signature.word[0];
+    uint32_t cell = cell_of(counts);
+    uint32_t open = index->start[GRRL_EXPERIENCE_CELLS]++;
+    for (uint32_t behind = GRRL_EXPERIENCE_CELLS - 1; behind > cell; --behind) {
+        uint32_t first = index->start[behind]++;
+        if (first != open) {
+            index->rows[open] = index->rows[first];
+            open = first;
+        }
+    }
+    index->rows[open] = (struct grrl_experience_row){counts, state->paths, number};
+    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; i++) {
+        uint8_t size = (uint8_t)(counts >> 8 * i);
+        index->most[i] = size > index->most[i] ? size : index->most[i];
+    }
+}
+
+void grrl_experience_index_remove(struct grrl_experience_index *index,
+                                  const struct grrl_experience_state *state, uint32_t number)
+{
+    uint32_t cell = cell_of(state->signature.word[0]);
+    uint32_t open = index->start[cell];
+    while (index->rows[open].state != number)
+        open++;
+    assert(open < index->start[cell + 1]);
+    for (uint32_t behind = cell + 1; behind <= GRRL_EXPERIENCE_CELLS; behind++) {
+        uint32_t last = --index->start[behind];
+        if (last != open) {
+            index->rows[open] = index->rows[last];
+            open = last;
+        }
+    }
+}
+
+/* States of one size, all larger than the current one or all smaller. */
+static void search_cell(const struct grrl_experience_index *index, uint64_t size, bool larger,
+                        const struct grrl_experience_state *current, unsigned distance,
+                        struct grrl_closest *closest)
+{
+    const uint64_t own = current->signature.word[0];
+    const struct grrl_paths paths = current->paths;
+    uint32_t cell = cell_of(size);
+    for (uint32_t i = index->start[cell]; i < index->start[cell + 1]; i++) {
+        const struct grrl_experience_row *row = &index->rows[i];
+        bool fits = larger ? grrl_experience_fits(own, &paths, row->counts, &row->paths)
+                           : grrl_experience_fits(row->counts, &row->paths, own, &paths);
+        if (fits && (row->counts & SIZE_BYTES) == size &&
+            grrl_closest_wants(closest, distance, row->state))
+            grrl_closest_add(closest, distance, row->state);
+    }
+}
+
+void grrl_experience_index_find(const struct grrl_experience_index *index,
+                                const struct grrl_experience_state *current, unsigned distance,
+                                struct grrl_closest *closest)
+{
+    const unsigned n = current->n;
+    const unsigned r = current->joints[GRRL_REVOLUTE];
+    const unsigned p = current->joints[GRRL_PRISMATIC];
+    for (unsigned links = 0; links <= distance; links++) {
+        for (unsigned revolute = 0; links + revolute <= distance; revolute++) {
+            unsigned prismatic = distance - links - revolute;
+            if (links <= n && revolute <= r && prismatic <= p) {
+                search_cell(index, size_of(n - links, r - revolute, p - prismatic), false, current,
+                            distance, closest);
+            }
+            if (n + links <= index->most[0] && r + revolute <= index->most[1] &&
+                p + prismatic <= index->most[2]) {
+                search_cell(index, size_of(n + links, r + revolute, p + prismatic), true, current,
+                            distance, closest);
+            }
+        }
+    }
+    grrl_closest_sort(closest);
+}
+
+unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,
+                                     const struct grrl_experience_state *current)
+{
+    const unsigned own[] = {current->n, current->joints[GRRL_REVOLUTE],
+                            current->joints[GRRL_PRISMATIC]};
+    unsigned less = 0;
+    unsigned more = 0;
+    for (int i = 0; i < 1 + GRRL_JOINT_TYPES; i++) {
+        less += own[i];
+        more += index->most[i] > own[i] ? index->most[i] - own[i] : 0;
+    }
+    return less > more ? less : more;
+}

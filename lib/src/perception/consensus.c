@@ -1,0 +1,230 @@
+/*
+ * consensus.c: the largest set of features that moved as one.
+ *
+ * Each hypothesis starts from a feature and its nearest neighbours: where has this group moved, and
+ * which features moved with it? It grows over those that did. The residual of a follower is divided
+ * by a variance that includes the uncertainty of the group's own pose, so that four features can
+ * grow along a link without losing its far end.
+ */
+#include "perception/perception_internal.h"
+
+#include <string.h>
+
+#define SEED_NEIGHBOURS 3 /* with the seed: the smallest group whose pose is worth something */
+#define SEEDS_MAX 48
+#define SPLIT_KEYFRAMES 12 /* that tell most, used to score hypotheses */
+#define MISFIT_CAP 400.0f  /* of one squared residual: high, to rank keyframes by it */
+#define INLIER_COST 3.5f   /* mean squared residual of a member; 2 is expected */
+
+/* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
+float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t body,
+                  float *score)
+{
+    float worst = 0.0f;
+    float total = 0.0f;
+    float total_n = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pose = &p->pose[k][body];
+        float sum = 0.0f;
+        float count = 0.0f;
+        for (uint16_t i = 0; i < n; i++) {
+            uint8_t w = p->keyframe[k].weight[slots[i]];
+            if (w > 0 && pose->mass > 0.0f) {
+                float d2 = grrl_distance2(p->keyframe[k].point[slots[i]],
+                                          grrl_transform(pose->pose, p->shape[slots[i]])) /
+                           grrl_keyframe_variance(p, w);
+                sum += d2 < MISFIT_CAP ? d2 : MISFIT_CAP;
+                count += 1.0f;
+            }
+        }
+        score[k] = count > 0.0f ? (sum - 2.0f * count) / grrl_sqrt(4.0f * count) : 0.0f;
+        worst = score[k] > worst ? score[k] : worst;
+        total += sum;
+        total_n += count;
+    }
+    float all = total_n > 0.0f ? (total - 2.0f * total_n) / grrl_sqrt(4.0f * total_n) : 0.0f;
+    return worst > all ? worst : all;
+}
+
+/* A few keyframes as a perception of their own would see them: which to score hypotheses on. */
+struct choice_of_keyframes {
+    uint8_t n;
+    uint8_t k[SPLIT_KEYFRAMES];
+};
+
+/* Half of them spread over all keyframes, the last included, so that no lasting change is missed;
+ * half those in which the features fit worst as one body. */
+static struct choice_of_keyframes telling_keyframes(const struct grrl_perception *p,
+                                                    const float *score)
+{
+    struct choice_of_keyframes chosen = {0};
+    bool taken[GRRL_MAX_KEYFRAMES] = {false};
+    for (uint8_t i = 0; i < SPLIT_KEYFRAMES / 2; i++) {
+        uint8_t k = (uint8_t)((p->n_keyframes - 1) * (i + 1) / (SPLIT_KEYFRAMES / 2));
+        if (!taken[k]) {
+            taken[k] = true;
+            chosen.k[chosen.n++] = k;
+        }
+    }
+    while (chosen.n < SPLIT_KEYFRAMES && chosen.n < p->n_keyframes) {
+        uint8_t best = GRRL_MAX_KEYFRAMES;
+        for (uint8_t k = 0; k < p->n_keyframes; k++)
+            if (!taken[k] && (best == GRRL_MAX_KEYFRAMES || score[k] > score[best]))
+                best = k;
+        taken[best] = true;
+        chosen.k[chosen.n++] = best;
+    }
+    return chosen;
+}
+
+/* A rigid displacement from one keyframe to another, with what its uncertainty needs. */
+struct displacement {
+    struct grrl_vec2 from;
+    struct grrl_vec2 to;
+    float c;
+    float s;
+    float mass;
+    float inertia;
+};
+
+static bool displacement_of(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                            uint8_t k0, uint8_t k1, struct displacement *d)
+{
+    const struct grrl_perception_keyframe *a = &p->keyframe[k0];
+    const struct grrl_perception_keyframe *b = &p->keyframe[k1];
+    *d = (struct displacement){.c = 1.0f};
+    unsigned seen = 0;
+    for (uint16_t i = 0; i < n; i++) {
+        if (a->weight[slots[i]] > 0 && b->weight[slots[i]] > 0) {
+            d->from = grrl_vec2_add(d->from, a->point[slots[i]]);
+            d->to = grrl_vec2_add(d->to, b->point[slots[i]]);
+            seen++;
+        }
+    }
+    if (seen < 2)
+        return false;
+    d->mass = (float)seen;
+    d->from = grrl_vec2_scale(d->from, 1.0f / d->mass);
+    d->to = grrl_vec2_scale(d->to, 1.0f / d->mass);
+    float along = 0.0f;
+    float across = 0.0f;
+    for (uint16_t i = 0; i < n; i++) {
+        if (a->weight[slots[i]] > 0 && b->weight[slots[i]] > 0) {
+            struct grrl_vec2 x = grrl_vec2_sub(a->point[slots[i]], d->from);
+            struct grrl_vec2 y = grrl_vec2_sub(b->point[slots[i]], d->to);
+            along += grrl_vec2_dot(x, y);
+            across += grrl_vec2_cross(x, y);
+            d->inertia += grrl_vec2_dot(x, x);
+        }
+    }
+    float length = grrl_sqrt(along * along + across * across);
+    if (length > 0.0f) {
+        d->c = along / length;
+        d->s = across / length;
+    }
+    return d->inertia > 0.0f;
+}
+
+/*
+ * The features among `slots` that move as the group does, in the chosen keyframes relative to the
+ * reference k0; returns how many, members[] holds them.
+ */
+static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                          const uint16_t *group, uint16_t n_group, uint8_t k0,
+                          const struct choice_of_keyframes *chosen, uint16_t *members)
+{
+    float cost[GRRL_MAX_FEATURES] = {0.0f};
+    float count[GRRL_MAX_FEATURES] = {0.0f};
+    for (uint8_t c = 0; c < chosen->n; c++) {
+        uint8_t k = chosen->k[c];
+        struct displacement d;
+        if (k == k0 || !displacement_of(p, group, n_group, k0, k, &d))
+            continue;
+        for (uint16_t i = 0; i < n; i++) {
+            uint8_t w0 = p->keyframe[k0].weight[slots[i]];
+            uint8_t w1 = p->keyframe[k].weight[slots[i]];
+            if (w0 == 0 || w1 == 0)
+                continue;
+            struct grrl_vec2 x = grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from);
+            struct grrl_vec2 y = grrl_vec2_sub(p->keyframe[k].point[slots[i]], d.to);
+            struct grrl_vec2 r = {y.x - (d.c * x.x - d.s * x.y), y.y - (d.s * x.x + d.c * x.y)};
+            float variance = (grrl_keyframe_variance(p, w0) + grrl_keyframe_variance(p, w1)) *
+                             (1.0f + 1.0f / d.mass + grrl_vec2_dot(x, x) / (2.0f * d.inertia));
+            float d2 = grrl_vec2_dot(r, r) / variance;
+            cost[i] += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
+            count[i] += 1.0f;
+        }
+    }
+    uint16_t n_members = 0;
+    for (uint16_t i = 0; i < n; i++)
+        if (count[i] > 0.0f && cost[i] <= INLIER_COST * count[i])
+            members[n_members++] = slots[i];
+    return n_members;
+}
+
+/* The seed and its nearest neighbours in the reference keyframe. */
+static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                           uint16_t seed, uint8_t k0, uint16_t *group)
+{
+    float d2[SEED_NEIGHBOURS];
+    uint16_t n_group = 1;
+    group[0] = seed;
+    for (uint16_t i = 0; i < n; i++) {
+        if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0)
+            continue;
+        float d = grrl_distance2(p->keyframe[k0].point[seed], p->keyframe[k0].point[slots[i]]);
+        uint16_t at = n_group;
+        while (at > 1 && d2[at - 2] > d) {
+            if (at <= SEED_NEIGHBOURS) {
+                d2[at - 1] = d2[at - 2];
+                group[at] = group[at - 1];
+            }
+            at--;
+        }
+        if (at <= SEED_NEIGHBOURS) {
+            d2[at - 1] = d;
+            group[at] = slots[i];
+            n_group = n_group <= SEED_NEIGHBOURS ? (uint16_t)(n_group + 1) : n_group;
+        }
+    }
+    return n_group;
+}
+
+/* The largest set of features in `slots` that moved as one; returns its size, members[]. */
+uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                        const float *score, uint16_t *members)
+{
+    struct choice_of_keyframes chosen = telling_keyframes(p, score);
+    uint8_t k0 = 0;
+    unsigned best_seen = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) { /* the reference: most seen, best averaged */
+        unsigned seen = 0;
+        for (uint16_t i = 0; i < n; i++) {
+            uint8_t w = p->keyframe[k].weight[slots[i]];
+            seen += w > 0 ? 100u + w : 0u;
+        }
+        if (seen > best_seen) {
+            best_seen = seen;
+            k0 = k;
+        }
+    }
+    uint16_t best = 0;
+    uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
+    for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
+        uint16_t group[GRRL_MAX_FEATURES];
+        uint16_t grown[GRRL_MAX_FEATURES];
+        if (p->keyframe[k0].weight[slots[i]] == 0)
+            continue;
+        uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
+        for (int round = 0; round < 3 && n_group >= 3; round++) {
+            uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
+            memcpy(group, grown, n_grown * sizeof group[0]);
+            n_group = n_grown;
+        }
+        if (n_group > best) {
+            best = n_group;
+            memcpy(members, group, n_group * sizeof group[0]);
+        }
+    }
+    return best;
+}

@@ -1,0 +1,150 @@
+/*
+ * first_look.c: what may be a body before anything has moved. Features of objects lie densely,
+ * those of the background do not: each dense group (blob) is one candidate link.
+ */
+#include "perception/perception_internal.h"
+
+#define DENSITY_CONTRAST 1.4f /* log of squared distances: background is twice as sparse */
+
+/* Squared distance from slot i to its second nearest neighbour in the first keyframe. */
+static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[0];
+    float nearest = 1e9f;
+    float second = 1e9f;
+    for (uint16_t j = 0; j < p->n_slots; j++) {
+        if (j == i || key->weight[j] == 0)
+            continue;
+        float d = grrl_distance2(key->point[i], key->point[j]);
+        if (d < nearest) {
+            second = nearest;
+            nearest = d;
+        } else if (d < second) {
+            second = d;
+        }
+    }
+    return second;
+}
+
+static void sort(float *values, uint16_t n)
+{
+    for (uint16_t i = 1; i < n;
+         i++) { /* insertion sort: once an object, GRRL_MAX_FEATURES values */
+        float v = values[i];
+        uint16_t j = i;
+        while (j > 0 && values[j - 1] > v) {
+            values[j] = values[j - 1];
+            j--;
+        }
+        values[j] = v;
+    }
+}
+
+/*
+ * How far features of one object lie apart at most: three times their usual distance. Features of
+ * objects lie densely, those of the background do not; Otsu's threshold (1979) on the logarithms
+ * of the sorted distances parts the two, whichever are more.
+ */
+static float object_reach(float *distance2, uint16_t n)
+{
+    sort(distance2, n);
+    float total = 0.0f;
+    for (uint16_t i = 0; i < n; i++)
+        total += grrl_log(distance2[i] + 1e-9f);
+    uint16_t dense = n;
+    float best = 0.0f;
+    float below = 0.0f;
+    for (uint16_t i = 1; i < n; i++) {
+        below += grrl_log(distance2[i - 1] + 1e-9f);
+        float gap = below / (float)i - (total - below) / (float)(n - i);
+        float between = gap * gap * (float)i * (float)(n - i);
+        if (between > best && -gap > DENSITY_CONTRAST) {
+            best = between;
+            dense = i;
+        }
+    }
+    return 3.0f * grrl_sqrt(distance2[dense / 2]);
+}
+
+/* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
+static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach2, uint8_t blob)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[0];
+    uint16_t queue[GRRL_MAX_FEATURES];
+    uint16_t n = 1;
+    queue[0] = start;
+    p->blob_of[start] = blob;
+    for (uint16_t next = 0; next < n; next++) {
+        for (uint16_t j = 0; j < p->n_slots; j++) {
+            if (p->blob_of[j] == 0 && key->weight[j] > 0 &&
+                grrl_distance2(key->point[queue[next]], key->point[j]) < reach2) {
+                p->blob_of[j] = blob;
+                queue[n++] = j;
+            }
+        }
+    }
+    return n;
+}
+
+bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[0];
+    bool reached[GRRL_MAX_FEATURES] = {false};
+    uint16_t queue[GRRL_MAX_FEATURES];
+    for (uint16_t start = 0; start < p->n_slots; start++) {
+        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0)
+            continue;
+        uint16_t n = 1;
+        queue[0] = start;
+        reached[start] = true;
+        for (uint16_t next = 0; next < n; next++) {
+            for (uint16_t j = 0; j < p->n_slots; j++) {
+                if (p->body_of[j] == body && !reached[j] && key->weight[j] > 0 &&
+                    grrl_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
+                    reached[j] = true;
+                    queue[n++] = j;
+                }
+            }
+        }
+        if (n >= p->config.min_features)
+            return true;
+    }
+    return false;
+}
+
+void grrl_first_look(struct grrl_perception *p)
+{
+    float values[GRRL_MAX_FEATURES];
+    uint16_t n = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        p->body_of[i] = p->config.static_background ? GRRL_FEATURE_BACKGROUND : 0;
+        p->blob_of[i] = p->config.static_background ? 0 : 1;
+        if (p->keyframe[0].weight[i] > 0)
+            values[n++] = neighbour_distance2(p, i);
+    }
+    if (!p->config.static_background) {
+        grrl_body_add(p);
+        return;
+    }
+    if (n < 3)
+        return;
+    float reach = object_reach(values, n);
+    p->reach2_m2 = reach * reach;
+    uint8_t blob = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS)
+            continue;
+        uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(blob + 1));
+        bool is_body = size >= p->config.min_features + 1;
+        for (uint16_t j = 0; j < p->n_slots; j++) {
+            if (p->blob_of[j] == blob + 1) {
+                p->body_of[j] = is_body ? blob : GRRL_FEATURE_BACKGROUND;
+                p->blob_of[j] = is_body ? (uint8_t)(blob + 1) : 0;
+            }
+        }
+        if (is_body) {
+            blob++;
+            grrl_body_add(p);
+        }
+    }
+}

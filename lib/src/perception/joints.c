@@ -1,0 +1,463 @@
+/*
+ * joints.c: what ties two bodies together.
+ *
+ * Three models of the relative motion of a pair are compared on all keyframes that saw both:
+ *   revolute    one point of either body stays on one point of the other: 4 parameters
+ *   prismatic   no relative turn, sliding along one line: 3 parameters
+ *   free        anything; explains all, but pays for each keyframe in which it was needed
+ * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
+ * sliding), and a joint type is called only when the motion excites it.
+ */
+#include "perception/perception_internal.h"
+
+#define FREE_COST 14.0f       /* chi squared a free pose costs in a keyframe that needs it */
+#define FREE_COST_MAX 140.0f  /* neighbouring keyframes are not independent: no more than this */
+#define TYPE_MARGIN 8.0f      /* chi squared by which one type must be better than the other */
+#define MOVING_MISS_MAX 14.0f /* chi squared: a few frames of a fast body can lie aside */
+#define JOINT_PRIOR 2.0f      /* chi squared in favour of a joint where the motion tells nothing */
+#define TURN_EVIDENCE_MAX 30.0f
+#define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
+#define MISFIT_BASE 10.0f   /* chi squared beyond which a type does not explain the motion, .. */
+#define MISFIT_SIGMAS 5.0f  /* .. and its standard deviations over all keyframes */
+#define MISFIT_WEIGHT 0.1f  /* of chi squared missed, among joints equally well supported */
+#define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
+#define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
+
+/* The relative motion of bodies a and b in one keyframe, in the frame of a. */
+struct relative {
+    float c; /* rotation of b in a */
+    float s;
+    struct grrl_vec2 d; /* origin of b in a */
+    const struct grrl_perception_pose *pa;
+    const struct grrl_perception_pose *pb;
+};
+
+struct motion {
+    uint8_t n;
+    struct relative at[GRRL_MAX_KEYFRAMES];
+    bool at_rest[GRRL_MAX_KEYFRAMES];
+    float noise2;
+    float bend_a; /* variances of the bodies' residuals beyond noise, per axis */
+    float bend_b;
+    float c0; /* mean rotation */
+    float s0;
+};
+
+static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struct motion *motion)
+{
+    motion->n = 0;
+    motion->noise2 = p->config.noise_m * p->config.noise_m;
+    motion->bend_a = p->bend_m2[a];
+    motion->bend_b = p->bend_m2[b];
+    float c = 0.0f;
+    float s = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pa = &p->pose[k][a];
+        const struct grrl_perception_pose *pb = &p->pose[k][b];
+        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f))
+            continue;
+        motion->at_rest[motion->n] = p->keyframe[k].at_rest;
+        struct relative *r = &motion->at[motion->n++];
+        r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
+        r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
+        r->d = grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p));
+        r->pa = pa;
+        r->pb = pb;
+        c += r->c;
+        s += r->s;
+    }
+    float length = grrl_sqrt(c * c + s * s);
+    motion->c0 = length > 0.0f ? c / length : 1.0f;
+    motion->s0 = length > 0.0f ? s / length : 0.0f;
+}
+
+/* Variance per axis of the distance between a point of a and a point of b, given their squared
+ * distances from the bodies' origins; model error of either body included. */
+static float point_variance(const struct grrl_perception *p, const struct motion *motion,
+                            const struct relative *r, float lever_a2, float lever_b2)
+{
+    float model = p->config.model_error_m;
+    return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
+                             0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
+                                     lever_b2 / (r->pb->inertia + 1e-9f))) +
+           2.0f * model * model + motion->bend_a + motion->bend_b;
+}
+
+static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
+                           const struct relative *r)
+{
+    /* the model error of a body's n features acts on its turn like noise of one frame each */
+    float model2 = p->config.model_error_m * p->config.model_error_m;
+    return (motion->noise2 + 4.0f * model2) *
+               (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f)) +
+           motion->bend_a * r->pa->mass / (r->pa->inertia + 1e-9f) +
+           motion->bend_b * r->pb->mass / (r->pb->inertia + 1e-9f);
+}
+
+static float turn_from_mean(const struct motion *motion, const struct relative *r)
+{
+    return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
+}
+
+/* Whether a keyframe that the fit misses by chi2 may be wrong itself. At rest many frames are
+ * averaged, in a push few: a gap and an outlier can draw a fast body aside, and outweigh all else.
+ */
+static bool is_doubtful(const struct motion *motion, uint8_t k, float chi2)
+{
+    return !motion->at_rest[k] && chi2 > MOVING_MISS_MAX;
+}
+
+/* Half the extent of a body's features. */
+static float half_extent(const struct grrl_perception *p, uint8_t body)
+{
+    float far2 = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            float d2 = grrl_vec2_dot(p->shape[i], p->shape[i]);
+            far2 = d2 > far2 ? d2 : far2;
+        }
+    }
+    return grrl_sqrt(far2);
+}
+
+/*
+ * Least squares for the pivot: pa + .. minimises sum w |pa - R pb - d|^2 + |pa|^2 / sa^2 +
+ * |pb|^2 / sb^2. R is a rotation, so the 4 x 4 normal equations reduce to scalars.
+ */
+static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
+                         float hb, struct grrl_joint_fit *fit)
+{
+    float sa = p->config.pivot_scale_m + ha;
+    float sb = p->config.pivot_scale_m + hb;
+    float lever_a2 = ha * ha;
+    float lever_b2 = hb * hb;
+    float chi2 = 0.0f;
+    for (int round = 0; round < 2; round++) {
+        float w = 0.0f;
+        float mc = 0.0f;
+        float ms = 0.0f;
+        struct grrl_vec2 d = {0.0f, 0.0f};
+        struct grrl_vec2 e = {0.0f, 0.0f};
+        for (uint8_t k = 0; k < motion->n; k++) {
+            const struct relative *r = &motion->at[k];
+            float wk = 1.0f / point_variance(p, motion, r, lever_a2, lever_b2);
+            w += wk;
+            mc += wk * r->c;
+            ms += wk * r->s;
+            d = grrl_vec2_add(d, grrl_vec2_scale(r->d, wk));
+            e.x += wk * (r->c * r->d.x + r->s * r->d.y);
+            e.y += wk * (-r->s * r->d.x + r->c * r->d.y);
+        }
+        float a = w + 1.0f / (sa * sa);
+        float b = w + 1.0f / (sb * sb);
+        float schur = b - (mc * mc + ms * ms) / a;
+        schur = schur > 1.0f / (sb * sb) ? schur : 1.0f / (sb * sb); /* rounding */
+        fit->in_b.x = ((mc * d.x + ms * d.y) / a - e.x) / schur;
+        fit->in_b.y = ((-ms * d.x + mc * d.y) / a - e.y) / schur;
+        fit->in_a.x = (d.x + mc * fit->in_b.x - ms * fit->in_b.y) / a;
+        fit->in_a.y = (d.y + ms * fit->in_b.x + mc * fit->in_b.y) / a;
+        fit->point_variance = 1.0f / schur;
+        lever_a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
+        lever_b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
+    }
+    fit->lower = 0.0f;
+    fit->upper = 0.0f;
+    float first = turn_from_mean(motion, &motion->at[0]);
+    float least_variance = 1e9f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 q = {r->c * fit->in_b.x - r->s * fit->in_b.y,
+                              r->s * fit->in_b.x + r->c * fit->in_b.y};
+        struct grrl_vec2 miss = grrl_vec2_sub(grrl_vec2_sub(fit->in_a, q), r->d);
+        float missed = grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+        if (is_doubtful(motion, k, missed)) {
+            chi2 += MOVING_MISS_MAX;
+            continue;
+        }
+        chi2 += missed;
+        float turn = grrl_wrap_rad(turn_from_mean(motion, r) - first);
+        float variance = turn_variance(p, motion, r);
+        fit->lower = turn < fit->lower ? turn : fit->lower;
+        fit->upper = turn > fit->upper ? turn : fit->upper;
+        least_variance = variance < least_variance ? variance : least_variance;
+    }
+    chi2 += lever_a2 / (sa * sa) + lever_b2 / (sb * sb);
+    fit->excess = chi2 - 2.0f * (float)motion->n + 4.0f;
+    float range = fit->upper - fit->lower;
+    fit->excited = range > p->config.min_turn_rad &&
+                   range * range > EXCITED_SIGMAS * EXCITED_SIGMAS * least_variance;
+    fit->axis_in_a = (struct grrl_vec2){0.0f, 0.0f};
+    fit->axis_variance = 0.0f;
+}
+
+/* The sliding point half way between the bodies, so that the turn noise of both counts the same. */
+static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r,
+                                    struct grrl_vec2 middle)
+{
+    float turn = r->s * motion->c0 - r->c * motion->s0;
+    return (struct grrl_vec2){r->d.x - 0.5f * (middle.x - turn * middle.y),
+                              r->d.y - 0.5f * (middle.y + turn * middle.x)};
+}
+
+static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
+                          struct grrl_joint_fit *fit)
+{
+    struct grrl_vec2 middle = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++)
+        middle = grrl_vec2_add(middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    float lever2 = 0.25f * grrl_vec2_dot(middle, middle);
+    float w = 0.0f;
+    struct grrl_vec2 mean = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++) {
+        float wk = 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
+        w += wk;
+        mean =
+            grrl_vec2_add(mean, grrl_vec2_scale(slide_point(motion, &motion->at[k], middle), wk));
+    }
+    mean = grrl_vec2_scale(mean, 1.0f / w);
+    float xx = 0.0f;
+    float xy = 0.0f;
+    float yy = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 q = grrl_vec2_sub(slide_point(motion, r, middle), mean);
+        float wk = 1.0f / point_variance(p, motion, r, lever2, lever2);
+        xx += wk * q.x * q.x;
+        xy += wk * q.x * q.y;
+        yy += wk * q.y * q.y;
+    }
+    float major;
+    float minor;
+    grrl_principal_axes(xx, xy, yy, &major, &minor, &fit->axis_in_a);
+    float chi2 = 0.0f;
+    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], middle), fit->axis_in_a);
+    fit->lower = 0.0f;
+    fit->upper = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 point = slide_point(motion, r, middle);
+        float across = grrl_vec2_cross(fit->axis_in_a, grrl_vec2_sub(point, mean));
+        float turn = turn_from_mean(motion, r);
+        float missed = across * across / point_variance(p, motion, r, lever2, lever2) +
+                       turn * turn / turn_variance(p, motion, r);
+        if (is_doubtful(motion, k, missed)) {
+            chi2 += MOVING_MISS_MAX;
+            continue;
+        }
+        chi2 += missed;
+        float slide = grrl_vec2_dot(point, fit->axis_in_a) - first;
+        fit->lower = slide < fit->lower ? slide : fit->lower;
+        fit->upper = slide > fit->upper ? slide : fit->upper;
+    }
+    fit->excess = chi2 - 2.0f * (float)motion->n + 3.0f;
+    float range = fit->upper - fit->lower;
+    fit->excited = range > p->config.min_slide_m &&
+                   range * range * w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
+    fit->in_a = grrl_vec2_scale(mean, 1.0f);
+    fit->in_b = (struct grrl_vec2){0.0f, 0.0f};
+    fit->point_variance = 1.0f / w;
+    fit->axis_variance = 1.0f / (major + 1.0f);
+}
+
+/* What free motion pays: the keyframes that differ from a rigid pair, up to a limit. */
+static float free_cost(const struct grrl_perception *p, const struct motion *motion)
+{
+    struct grrl_vec2 mean = {0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++)
+        mean = grrl_vec2_add(mean, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    float lever2 = 0.25f * grrl_vec2_dot(mean, mean);
+    float cost = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        struct grrl_vec2 off = grrl_vec2_sub(r->d, mean);
+        float turn = turn_from_mean(motion, r);
+        float rigid = grrl_vec2_dot(off, off) / point_variance(p, motion, r, lever2, lever2) +
+                      turn * turn / turn_variance(p, motion, r);
+        cost += rigid < FREE_COST ? rigid : FREE_COST;
+    }
+    return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
+}
+
+/* The distance from a point in a body's frame to its third nearest feature: a few features beside
+ * a joint may be counted to the wrong body. */
+static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
+{
+    float nearest2[3] = {1e9f, 1e9f, 1e9f};
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
+            float d2 = grrl_vec2_dot(d, d);
+            for (int at = 0; at < 3; at++) {
+                if (d2 < nearest2[at]) {
+                    float t = nearest2[at];
+                    nearest2[at] = d2;
+                    d2 = t;
+                }
+            }
+        }
+    }
+    return grrl_sqrt(nearest2[2]);
+}
+
+/* Distance between the nearest features of two bodies in keyframe k. */
+static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
+{
+    const struct grrl_perception_pose *pb = &p->pose[k][b];
+    const struct grrl_perception_pose *pa = &p->pose[k][a];
+    float best = 1e9f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == b) {
+            struct grrl_vec2 world = grrl_transform(pb->pose, p->shape[i]);
+            float d = distance_to_body(p, a, grrl_untransform(pa->pose, world));
+            best = d < best ? d : best;
+        }
+    }
+    return best;
+}
+
+/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
+ */
+static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+{
+    float gap = p->config.gap_m;
+    if (e->type == GRRL_REVOLUTE) {
+        return distance_to_body(p, e->a, e->fit.in_a) < gap &&
+               distance_to_body(p, e->b, e->fit.in_b) < gap;
+    }
+    gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        bool both = p->pose[k][e->a].mass > 0.0f && p->pose[k][e->b].mass > 0.0f;
+        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
+            return false;
+    }
+    return true;
+}
+
+/*
+ * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
+ * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
+ * distance from the pivot, tells that it stays where it is.
+ */
+static float curvature_evidence(const struct grrl_perception *p, const struct motion *motion,
+                                const struct grrl_joint_fit *fit)
+{
+    float a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
+    float b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
+    float lever2 = a2 > b2 ? a2 : b2;
+    float w = 0.0f;
+    float m[5] = {0.0f}; /* moments of the turn, weighted */
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float wk = 1.0f / point_variance(p, motion, r, a2, b2);
+        float turn = turn_from_mean(motion, r);
+        float power = wk;
+        for (int i = 0; i < 5; i++) {
+            m[i] += power;
+            power *= turn;
+        }
+        w += wk;
+    }
+    /* what remains of turn^2 / 2 after regression on 1 and turn */
+    float mean = m[1] / w;
+    float var = m[2] - w * mean * mean;
+    float cov = m[3] - mean * m[2];
+    float sum = m[4] - m[2] * m[2] / w;
+    float rest = var > 0.0f ? sum - cov * cov / var : 0.0f;
+    return rest > 0.0f ? 0.25f * lever2 * rest : 0.0f;
+}
+
+/*
+ * What the motion says for sliding: two things that move in parallel look the same. They are tied
+ * if they turned together, or slid along the same line in several pushes.
+ */
+static float sliding_evidence(const struct grrl_perception *p, const struct motion *motion,
+                              const struct grrl_joint_fit *fit)
+{
+    const struct grrl_pose *first = &motion->at[0].pa->pose;
+    float turned = 0.0f;
+    float pushes = -1.0f;
+    float last = grrl_vec2_dot(motion->at[0].d, fit->axis_in_a);
+    for (uint8_t k = 1; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float turn = first->c * r->pa->pose.s - first->s * r->pa->pose.c;
+        turned += turn * turn / turn_variance(p, motion, r);
+        float at = grrl_vec2_dot(r->d, fit->axis_in_a);
+        if (motion->at_rest[k]) {
+            float slid = at > last ? at - last : last - at;
+            pushes += slid > p->config.min_slide_m ? 1.0f : 0.0f;
+            last = at;
+        }
+    }
+    turned = turned < TURN_EVIDENCE_MAX ? turned : TURN_EVIDENCE_MAX;
+    return turned + (pushes > 0.0f ? PUSH_EVIDENCE * pushes : 0.0f);
+}
+
+/*
+ * Chi squared of untied motion. A free motion explains also what a joint explains, and is then as
+ * likely as the joint but for what the motion tells beyond first order.
+ */
+static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
+                         const struct grrl_joint_fit *fit, bool turns, float free)
+{
+    float tested = turns ? curvature_evidence(p, motion, fit) : sliding_evidence(p, motion, fit);
+    float untested = fit->excess + tested + JOINT_PRIOR;
+    return free < untested ? free : untested;
+}
+
+/* Probabilities from chi squared, with equal priors. */
+static void model_probabilities(const float *chi2, float *probability)
+{
+    float least = chi2[0] < chi2[1] ? chi2[0] : chi2[1];
+    least = chi2[2] < least ? chi2[2] : least;
+    float sum = 0.0f;
+    for (int i = 0; i < 3; i++) {
+        probability[i] = grrl_exp(-0.5f * (chi2[i] - least));
+        sum += probability[i];
+    }
+    for (int i = 0; i < 3; i++)
+        probability[i] /= sum;
+}
+
+/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
+static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+{
+    float scale = 0.4f * p->config.gap_m;
+    float da = distance_to_body(p, e->a, e->fit.in_a);
+    float db = distance_to_body(p, e->b, e->fit.in_b);
+    if (e->type == GRRL_PRISMATIC) {
+        da = gap_between(p, e->a, e->b, (uint8_t)(p->n_keyframes - 1));
+        db = 0.0f;
+    }
+    return (da * da + db * db) / (scale * scale);
+}
+
+/* Weighs the evidence for a joint between a and b; false: none is supported. */
+bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                      struct grrl_joint_evidence *e)
+{
+    struct motion motion;
+    struct grrl_joint_fit revolute;
+    struct grrl_joint_fit prismatic;
+    collect(p, a, b, &motion);
+    if (motion.n < 2)
+        return false;
+    fit_revolute(p, &motion, half_extent(p, a), half_extent(p, b), &revolute);
+    fit_prismatic(p, &motion, &prismatic);
+    float free = free_cost(p, &motion);
+    bool is_revolute = revolute.excess < prismatic.excess;
+    e->fit = is_revolute ? revolute : prismatic;
+    e->type = is_revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC;
+    e->a = a;
+    e->b = b;
+    e->weight = free - e->fit.excess;
+    e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
+    float untied = untied_cost(p, &motion, &e->fit, is_revolute, free);
+    float chi2[3] = {revolute.excess, prismatic.excess, untied};
+    model_probabilities(chi2, e->p);
+    float support = untied - e->fit.excess;
+    float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e) - misfit;
+    bool fits = e->fit.excess < MISFIT_BASE + 2.0f * MISFIT_SIGMAS * grrl_sqrt((float)motion.n);
+    return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
+           is_near(p, e);
+}

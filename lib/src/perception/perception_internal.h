@@ -1,0 +1,148 @@
+/*
+ * perception_internal.h: the rooms behind perception.h.
+ *
+ *   perception.c  tracks and keyframes: what was seen
+ *   rigid.c       poses and residuals of a set of features taken as one rigid body
+ *   first_look.c  what may be a body before anything has moved
+ *   outliers.c    points that no motion explains
+ *   consensus.c   the largest set of features that moved as one
+ *   cut.c         the line along which two bodies part
+ *   bodies.c      which features belong together: split, reassign, merge
+ *   joints.c      what ties two bodies together
+ *   structure.c   the joints of all bodies, and the model
+ */
+#ifndef GRRL_PERCEPTION_INTERNAL_H
+#define GRRL_PERCEPTION_INTERNAL_H
+
+#include "grrl/perception/perception.h"
+
+/* Of one squared residual in units of its variance: an outlier weighs no more. */
+#define GRRL_COST_CAP 16.0f
+
+static inline float grrl_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    struct grrl_vec2 d = grrl_vec2_sub(a, b);
+    return grrl_vec2_dot(d, d);
+}
+
+/* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
+float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight);
+
+/*
+ * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
+ * frame, whose origin is the features' centroid.
+ */
+
+/* Poses in all keyframes and the shape that fit best. poses[k] for k < n_keyframes. */
+void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                    struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride);
+
+/*
+ * The poses once more, in each keyframe without the points that lie off the body: the farthest
+ * goes, and the next, until none is off. More than a third are no outliers, and the pose stays as
+ * it was.
+ */
+void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                      const struct grrl_vec2 *shape, struct grrl_perception_pose *poses,
+                      size_t stride);
+
+/* Where slot's point lies in the frame of these poses: the mean over all keyframes. */
+bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
+                      const struct grrl_perception_pose *poses, size_t stride,
+                      struct grrl_vec2 *local);
+
+/*
+ * Squared residuals of a slot over their variance, each cut at `cap`, summed over the keyframes;
+ * 2 is expected of each. *n counts the keyframes where both were seen.
+ */
+float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
+                      const struct grrl_perception_pose *poses, size_t stride, float cap,
+                      uint16_t *n);
+
+/* The members of body `body` (or GRRL_FEATURE_..), as slots. */
+uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
+
+/* first_look.c: the candidate bodies in the first keyframe. */
+void grrl_first_look(struct grrl_perception *p);
+
+/* Whether enough features of a body lay densely there, without those of others between them. */
+bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body);
+
+/* outliers.c: takes lone points off their bodies out of the keyframes of pushes not yet examined;
+ * whether there were any. */
+bool grrl_drop_outliers(struct grrl_perception *p);
+
+/*
+ * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
+ * together, in standard deviations of chi squared; score[k] is that of keyframe k.
+ */
+float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t body,
+                  float *score);
+
+/* The largest set among `slots` that moved as one in the keyframes of highest score; returns its
+ * size, members[] holds it. */
+uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                        const float *score, uint16_t *members);
+
+/* Features fitted as one rigid body. */
+struct grrl_together {
+    uint16_t n;
+    uint16_t slot[GRRL_MAX_FEATURES];
+    struct grrl_vec2 shape[GRRL_MAX_FEATURES];
+    struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES];
+};
+
+/*
+ * cut.c: the straight cut that parts the features best, if it is better than what they are now:
+ * those of `body` and the others. Returns by how much in chi squared; part[] holds one side.
+ */
+float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
+                    uint8_t body, uint16_t *part, uint16_t *n_part);
+
+/* The same for two links that cross: no straight cut parts them. */
+float grrl_best_cross(const struct grrl_perception *p, const struct grrl_together *together,
+                      uint8_t body, uint16_t *part, uint16_t *n_part);
+
+/* By how many standard deviations of chi squared a body's features part along some line more than
+ * noise explains; 0: they do not. */
+float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body);
+
+/* bodies.c: a new body without features, the last in the list; there must be room. */
+void grrl_body_add(struct grrl_perception *p);
+
+/* Brings body_of, shape and pose up to date. */
+void grrl_bodies_update(struct grrl_perception *p);
+
+/* How well a joint type explains the relative motion of two bodies. */
+struct grrl_joint_fit {
+    float excess; /* chi squared beyond its expectation */
+    bool excited; /* the motion is large enough to tell */
+    float lower;  /* excursion from the first keyframe, rad or m */
+    float upper;
+    struct grrl_vec2 in_a; /* the pivot, or a point on the axis, in the frame of a */
+    struct grrl_vec2 in_b;
+    struct grrl_vec2 axis_in_a;
+    float point_variance; /* of the pivot per axis; of the sliding line across */
+    float axis_variance;  /* of the sliding direction, rad^2 */
+};
+
+/* The evidence for a joint between bodies a < b. */
+struct grrl_joint_evidence {
+    float weight; /* chi squared better than free */
+    float order;  /* better than what untied motion explains as well, less for distance */
+    float odds;   /* chi squared better than the other type */
+    float p[3];   /* probabilities: revolute, prismatic, free */
+    uint8_t a;
+    uint8_t b;
+    uint8_t type;
+    struct grrl_joint_fit fit;
+};
+
+/* joints.c: weighs the evidence for a joint between a and b; false: none is supported. */
+bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                      struct grrl_joint_evidence *evidence);
+
+/* structure.c: fills the model from the bodies and what ties them together. */
+void grrl_structure_update(struct grrl_perception *p);
+
+#endif

@@ -1,0 +1,295 @@
+/*
+ * structure.c: the kinematic structure of all bodies, and the model that tells it.
+ *
+ * Joints come from a maximum spanning forest over the evidence; a joint that closes a loop of four
+ * links or more needs more of it (a triangle of joints could not move).
+ */
+#include "perception/perception_internal.h"
+
+#define PARALLELOGRAM_COST 20.0f /* sliding that turning explains comes after all else */
+#define SHORT_SLIDE 5.0f         /* in units of the least that tells a joint */
+#define HIDDEN_SIGMAS 3.5f       /* of both bodies together, by which they hide joints */
+#define SURE_DISCONNECTED 0.95f
+#define LOOP_COST 40.0f /* chi squared by which a joint that closes a loop is better than free */
+
+/* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
+static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
+{
+    uint32_t reached = UINT32_C(1) << a;
+    for (unsigned links = 1; links <= GRRL_MAX_LINKS; links++) {
+        if ((reached >> b & 1u) != 0)
+            return links;
+        uint32_t next = reached;
+        for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++)
+            next |= (reached >> i & 1u) != 0 ? joined[i] : 0u;
+        if (next == reached)
+            return 0;
+        reached = next;
+    }
+    return 0;
+}
+
+/* Several links on one pin are joined by one joint fewer than they are: a further joint at the
+ * pivot of one already taken closes no loop. */
+static bool shares_a_pin(const struct grrl_joint_evidence *taken, uint8_t n,
+                         const struct grrl_joint_evidence *e, float reach)
+{
+    if (e->type != GRRL_REVOLUTE)
+        return false;
+    for (uint8_t i = 0; i < n; i++) {
+        const struct grrl_joint_evidence *t = &taken[i];
+        struct grrl_vec2 d;
+        if (t->type != GRRL_REVOLUTE)
+            continue;
+        if (t->a == e->a || t->b == e->a)
+            d = grrl_vec2_sub(t->a == e->a ? t->fit.in_a : t->fit.in_b, e->fit.in_a);
+        else if (t->a == e->b || t->b == e->b)
+            d = grrl_vec2_sub(t->a == e->b ? t->fit.in_a : t->fit.in_b, e->fit.in_b);
+        else
+            continue;
+        if (grrl_vec2_length(d) < reach)
+            return true;
+    }
+    return false;
+}
+
+static const struct grrl_joint_evidence *find_revolute(const struct grrl_joint_evidence *e,
+                                                       uint16_t n, uint8_t a, uint8_t b)
+{
+    for (uint16_t i = 0; i < n; i++) {
+        bool is_pair = (e[i].a == a && e[i].b == b) || (e[i].a == b && e[i].b == a);
+        if (is_pair && e[i].type == GRRL_REVOLUTE)
+            return &e[i];
+    }
+    return NULL;
+}
+
+/*
+ * Whether two pivots on a third body explain that these two slide past each other without a turn,
+ * as opposite links of a parallelogram do: the third turns against either, and its turn times the
+ * distance of its pivots is as much as they slid.
+ */
+static bool is_parallelogram(const struct grrl_perception *p, const struct grrl_joint_evidence *all,
+                             uint16_t n, const struct grrl_joint_evidence *slide)
+{
+    float slid = slide->fit.upper - slide->fit.lower;
+    for (uint8_t c = 0; c < p->n_bodies; c++) {
+        const struct grrl_joint_evidence *ac = find_revolute(all, n, slide->a, c);
+        const struct grrl_joint_evidence *bc = find_revolute(all, n, slide->b, c);
+        if (ac == NULL || bc == NULL)
+            continue;
+        struct grrl_vec2 pa = ac->a == c ? ac->fit.in_a : ac->fit.in_b;
+        struct grrl_vec2 pb = bc->a == c ? bc->fit.in_a : bc->fit.in_b;
+        float turned = ac->fit.upper - ac->fit.lower;
+        if (grrl_vec2_length(grrl_vec2_sub(pa, pb)) * turned > 0.5f * slid)
+            return true;
+    }
+    return false;
+}
+
+/*
+ * Joints that turned too little to be told bend the bodies they are in, and bent bodies seem to
+ * slide: half a parallelogram past the other half. A short slide needs straight bodies.
+ */
+static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
+                                    const struct grrl_joint_evidence *e)
+{
+    bool is_short = e->fit.upper - e->fit.lower < SHORT_SLIDE * p->config.min_slide_m;
+    return e->type == GRRL_PRISMATIC && is_short &&
+           grrl_hidden_joint(p, e->a) + grrl_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
+}
+
+/* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
+ * returns how many. */
+static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joint_evidence *e,
+                                uint16_t n)
+{
+    uint32_t joined[GRRL_MAX_LINKS] = {0};
+    for (uint16_t i = 1; i < n; i++) {
+        struct grrl_joint_evidence moving = e[i];
+        uint16_t j = i;
+        while (j > 0 && e[j - 1].order < moving.order) {
+            e[j] = e[j - 1];
+            j--;
+        }
+        e[j] = moving;
+    }
+    uint8_t accepted = 0;
+    for (int loops = 0; loops < 2; loops++) {
+        for (uint16_t i = accepted; i < n && accepted < GRRL_MAX_JOINTS; i++) {
+            unsigned links = links_between(joined, e[i].a, e[i].b);
+            bool take = loops == 0 ? links == 0
+                                   : links >= 4 && e[i].weight > LOOP_COST &&
+                                         !shares_a_pin(e, accepted, &e[i], 0.2f * p->config.gap_m);
+            if (take) {
+                struct grrl_joint_evidence taken = e[i];
+                joined[taken.a] |= UINT32_C(1) << taken.b;
+                joined[taken.b] |= UINT32_C(1) << taken.a;
+                e[i] = e[accepted];
+                e[accepted++] = taken;
+            }
+        }
+    }
+    return accepted;
+}
+
+static void describe_joint(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                           struct grrl_joint *joint)
+{
+    const struct grrl_pose pose = p->pose[p->n_keyframes - 1][e->a].pose;
+    float v = e->fit.point_variance;
+    struct grrl_vec2 axis = grrl_rotate(pose, e->fit.axis_in_a);
+    bool slides = e->type == GRRL_PRISMATIC;
+    *joint = (struct grrl_joint){
+        .a = e->a,
+        .b = e->b,
+        .type = e->type,
+        .probability = e->p[e->type],
+        .p_revolute = e->p[0],
+        .p_prismatic = e->p[1],
+        .p_disconnected = e->p[2],
+        .point_m = grrl_transform(pose, e->fit.in_a),
+        .point_cov_m2 = {slides ? v * axis.y * axis.y : v, slides ? -v * axis.x * axis.y : 0.0f,
+                         slides ? v * axis.x * axis.x : v},
+        .axis = axis,
+        .axis_sd_rad = grrl_sqrt(e->fit.axis_variance),
+        .lower = e->fit.lower,
+        .upper = e->fit.upper,
+    };
+}
+
+static void describe_body(const struct grrl_perception *p, uint8_t body, struct grrl_body *out,
+                          const struct grrl_model *model)
+{
+    struct grrl_vec2 sum = {0.0f, 0.0f};
+    float n = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            sum = grrl_vec2_add(sum, model->feature_m[i]);
+            n += 1.0f;
+        }
+    }
+    out->number = p->number[body];
+    out->n_features = (uint16_t)n;
+    out->centroid_m = grrl_vec2_scale(sum, n > 0.0f ? 1.0f / n : 0.0f);
+    float xx = 0.0f;
+    float xy = 0.0f;
+    float yy = 0.0f;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
+            xx += d.x * d.x;
+            xy += d.x * d.y;
+            yy += d.y * d.y;
+        }
+    }
+    float major;
+    float minor;
+    grrl_principal_axes(xx, xy, yy, &major, &minor, &out->axis);
+    float along[2] = {1e9f, -1e9f};
+    float across[2] = {1e9f, -1e9f};
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body) {
+            struct grrl_vec2 d = grrl_vec2_sub(model->feature_m[i], out->centroid_m);
+            float x = grrl_vec2_dot(out->axis, d);
+            float y = grrl_vec2_cross(out->axis, d);
+            along[0] = x < along[0] ? x : along[0];
+            along[1] = x > along[1] ? x : along[1];
+            across[0] = y < across[0] ? y : across[0];
+            across[1] = y > across[1] ? y : across[1];
+        }
+    }
+    out->length_m = along[1] - along[0];
+    out->width_m = across[1] - across[0];
+    out->properties = out->length_m >= p->config.large_m ? (grrl_label)GRRL_PROPERTY_LARGE
+                                                         : (grrl_label)GRRL_PROPERTY_SMALL;
+}
+
+/* Joints in order of discovery: those of the last model that still hold come first. */
+static uint8_t order_of_discovery(const struct grrl_perception *p,
+                                  const struct grrl_joint_evidence *e, uint8_t n, uint8_t *order)
+{
+    uint8_t count = 0;
+    bool placed[GRRL_MAX_JOINTS] = {false};
+    for (uint8_t j = 0; j < p->model.n_joints; j++) {
+        uint16_t a = p->model.body[p->model.joint[j].a].number;
+        uint16_t b = p->model.body[p->model.joint[j].b].number;
+        for (uint8_t i = 0; i < n; i++) {
+            uint16_t ea = p->number[e[i].a];
+            uint16_t eb = p->number[e[i].b];
+            if (!placed[i] && ((ea == a && eb == b) || (ea == b && eb == a))) {
+                placed[i] = true;
+                order[count++] = i;
+            }
+        }
+    }
+    for (uint8_t i = 0; i < n; i++)
+        if (!placed[i])
+            order[count++] = i;
+    return count;
+}
+
+void grrl_structure_update(struct grrl_perception *p)
+{
+    struct grrl_joint_evidence e[GRRL_MAX_LINKS * (GRRL_MAX_LINKS - 1) / 2];
+    uint16_t n = 0;
+    for (uint8_t a = 0; a < p->n_bodies; a++) {
+        for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++)
+            if (grrl_joint_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n]))
+                n++;
+    }
+    for (uint16_t i = 0; i < n; i++)
+        if (e[i].type == GRRL_PRISMATIC && is_parallelogram(p, e, n, &e[i]))
+            e[i].order -= PARALLELOGRAM_COST;
+    uint8_t accepted = choose_structure(p, e, n);
+    uint8_t order[GRRL_MAX_JOINTS];
+    (void)order_of_discovery(p, e, accepted, order);
+    struct grrl_model *model = &p->model;
+    model->n_bodies = p->n_bodies;
+    model->n_joints = accepted;
+    model->n_features = p->n_slots;
+    for (uint8_t i = 0; i < accepted; i++)
+        describe_joint(p, &e[order[i]], &model->joint[i]);
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        uint8_t body = p->body_of[i];
+        bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].mass > 0.0f;
+        model->feature_id[i] = p->id[i];
+        model->feature_body[i] = body;
+        model->feature_m[i] =
+            in_body ? grrl_transform(p->pose[p->n_keyframes - 1][body].pose, p->shape[i])
+                    : p->last[i];
+    }
+    for (uint8_t b = 0; b < p->n_bodies; b++)
+        describe_body(p, b, &model->body[b], model);
+}
+
+static bool is_joined(const struct grrl_model *model, uint8_t a, uint8_t b)
+{
+    for (uint8_t i = 0; i < model->n_joints; i++)
+        if (model->joint[i].a == a && model->joint[i].b == b)
+            return true;
+    return false;
+}
+
+enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, uint8_t a,
+                                      uint8_t b, struct grrl_pair *pair)
+{
+    const struct grrl_model *model = &perception->model;
+    uint8_t first = a < b ? a : b;
+    uint8_t second = a < b ? b : a;
+    if (first == second || second >= model->n_bodies)
+        return GRRL_ERR_ARGUMENT;
+    struct grrl_joint_evidence e = {.fit = {.excited = false}};
+    (void)grrl_joint_weigh(perception, first, second, &e);
+    *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f};
+    if (e.fit.excited) {
+        pair->p_revolute = e.p[0];
+        pair->p_prismatic = e.p[1];
+        pair->p_disconnected = e.p[2];
+    }
+    if (is_joined(model, first, second))
+        pair->relation = GRRL_RELATION_JOINED;
+    else if (pair->p_disconnected >= SURE_DISCONNECTED)
+        pair->relation = GRRL_RELATION_DISCONNECTED;
+    return GRRL_OK;
+}

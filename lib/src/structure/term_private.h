@@ -1,0 +1,74 @@
+/*
+ * term_private.h: what the files of the term module share, and the walk that replaces recursion.
+ */
+#ifndef GRRL_TERM_PRIVATE_H
+#define GRRL_TERM_PRIVATE_H
+
+#include <stdbool.h>
+
+#include "grrl/structure/term.h"
+#include "base/text.h"
+
+/* A variable as a property is GRRL_PROPERTY_VARIABLE + n. */
+enum { GRRL_PROPERTY_VARIABLE = 128, GRRL_MAX_PROPERTY_VARIABLE = 127 };
+
+/* Nodes on a path from the root: no conjunction has a conjunction as a part, so at most one stands
+ * above each relation and above the link or action at the end. */
+enum { GRRL_WALK_DEPTH = 2 * GRRL_MAX_TERM_DEPTH + 3 };
+
+/* Visits a term in reading order: every node is entered, and left after its arguments. */
+struct grrl_walk {
+    const struct grrl_term_store *store;
+    grrl_term path[GRRL_WALK_DEPTH];
+    int depth; /* path[depth] is the node visited now */
+    bool entering;
+    bool started;
+};
+
+void grrl_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store, grrl_term term);
+
+/* The next visit, false after the root was left. */
+bool grrl_walk_next(struct grrl_walk *walk);
+
+static inline const struct grrl_term_node *grrl_walk_node(const struct grrl_walk *walk)
+{
+    return &walk->store->nodes[walk->path[walk->depth]];
+}
+
+/* Is this a term of the store at all? */
+static inline bool grrl_term_valid(const struct grrl_term_store *store, grrl_term term)
+{
+    return term != 0 && term < store->used;
+}
+
+/* A new zeroed node of this kind, 0 when the store is full. */
+grrl_term grrl_term_new(struct grrl_term_store *store, enum grrl_term_kind kind);
+
+/* Appends an argument, *last being the one before it or 0, and brings the depth up to date. */
+void grrl_term_append(struct grrl_term_store *store, grrl_term parent, grrl_term *last,
+                      grrl_term argument);
+
+/* Places up to the last that is not "none". */
+uint8_t grrl_term_trim(const grrl_property *properties, uint8_t n);
+
+static inline bool grrl_is_lower(char c)
+{
+    return c >= 'a' && c <= 'z';
+}
+
+static inline bool grrl_is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static inline bool grrl_is_word(char c)
+{
+    return grrl_is_lower(c) || grrl_is_digit(c) || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+/* The kind of a name that this word has the form of; GRRL_NAME_NONE for an atom. */
+enum grrl_name_kind grrl_name_form(const char *text, size_t length);
+
+void grrl_print_name(struct grrl_text *text, struct grrl_name name);
+
+#endif

@@ -1,0 +1,401 @@
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "grrl/learner/cases/case_base.h"
+#include "grrl/base/random.h"
+#include "memory_file.h"
+
+#define SEED UINT64_C(20080631)
+
+enum { CAPACITY = 40 };
+
+static struct {
+    struct grrl_case_base base;
+    struct grrl_case_config config;
+    struct grrl_case cases[CAPACITY];
+    struct grrl_random random;
+} f;
+
+static int set_up(void **state)
+{
+    (void)state;
+    grrl_cases_init(&f.base, f.cases, CAPACITY);
+    grrl_case_config_default(&f.config);
+    grrl_random_init(&f.random, SEED, 1);
+    return 0;
+}
+
+static struct grrl_context context(uint8_t a, uint8_t b)
+{
+    struct grrl_context context = {{0}};
+    context.part[GRRL_CONTEXT_DIRECTION] = a;
+    context.part[GRRL_CONTEXT_LENGTH] = b;
+    return context;
+}
+
+static struct grrl_context random_context(void)
+{
+    struct grrl_context context;
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++) {
+        uint32_t values = grrl_context_most[i] + 1u;
+        context.part[i] = (uint8_t)grrl_random_below(&f.random, values < 2 ? values : 2);
+    }
+    return context;
+}
+
+static void trust_always(void)
+{
+    f.config.confidence = GRRL_MAX_REWARD;
+    f.base.log_odds = f.config.confidence;
+}
+
+static float estimate(const struct grrl_context *of)
+{
+    struct grrl_estimate estimate;
+    grrl_cases_estimate(&f.base, &f.config, of, &estimate);
+    return estimate.value;
+}
+
+static void nothing_known_is_worth_the_prior(void **state)
+{
+    (void)state;
+    struct grrl_context a = context(0, 0);
+    struct grrl_estimate estimate;
+    grrl_cases_estimate(&f.base, &f.config, &a, &estimate);
+    assert_true(estimate.value == f.config.prior && estimate.weight == f.config.prior_weight);
+    assert_true(estimate.lower == f.config.prior - f.config.bound);
+    assert_true(estimate.upper == f.config.prior + f.config.bound);
+    assert_int_equal(estimate.closest, GRRL_NO_CASE);
+}
+
+/* Against a list of all rewards: a mean over them and the prior, by the parts that differ. */
+static void an_estimate_is_the_weighted_mean_of_all_rewards(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    struct grrl_context met[CAPACITY];
+    float reward[CAPACITY];
+    trust_always();
+    f.config.memory = CAPACITY;
+    for (unsigned n = 0; n < CAPACITY; n++) {
+        struct grrl_context asked = random_context();
+        double weight = (double)f.config.prior_weight;
+        double sum = weight * (double)f.config.prior;
+        unsigned fewest = GRRL_CONTEXT_PARTS + 1;
+        for (unsigned i = 0; i < n; i++) {
+            unsigned differ = 0;
+            for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
+                differ += met[i].part[part] != asked.part[part];
+            double alike = pow((double)f.config.mismatch, differ);
+            weight += alike;
+            sum += alike * (double)reward[i];
+            fewest = differ < fewest ? differ : fewest;
+        }
+        struct grrl_estimate estimate;
+        grrl_cases_estimate(&f.base, &f.config, &asked, &estimate);
+        assert_true(fabs((double)estimate.value - sum / weight) < 1e-4);
+        assert_true(fabs((double)estimate.weight - weight) < 1e-3);
+        if (n > 0)
+            assert_int_equal(estimate.mismatches, fewest);
+        met[n] = random_context();
+        reward[n] = (float)grrl_random_below(&f.random, 4);
+        assert_true(grrl_cases_learn(&f.base, &f.config, &met[n], reward[n]) < f.base.n);
+        grrl_cases_begin_trial(&f.base, &f.config); /* newer rewards would count more */
+    }
+    assert_true(f.base.n > 1 && f.base.evictions == 0);
+}
+
+static void parts_left_out_do_not_count(void **state)
+{
+    (void)state;
+    struct grrl_context a = context(0, 0);
+    struct grrl_context b = context(2, 0);
+    (void)grrl_cases_learn(&f.base, &f.config, &a, 3.0f);
+    assert_true(estimate(&b) < estimate(&a));
+    f.config.parts &= (uint16_t) ~(1u << GRRL_CONTEXT_DIRECTION);
+    assert_true(estimate(&b) == estimate(&a));
+}
+
+static void the_latest_rewards_count(void **state)
+{
+    (void)state;
+    struct grrl_context a = context(0, 0);
+    trust_always();
+    for (int i = 0; i < 50; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, &a, 0.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    float before = estimate(&a);
+    for (int i = 0; i < 10; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, &a, 2.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    assert_true(before < 0.1f && estimate(&a) > 1.4f);
+    assert_int_equal(f.base.cases[0].n, f.config.memory);
+}
+
+/* Of two contexts one finds something in each trial, the other nothing. */
+static void learn_an_object(const struct grrl_context *good, const struct grrl_context *bad)
+{
+    for (int trial = 0; trial < 10; trial++) {
+        grrl_cases_begin_trial(&f.base, &f.config);
+        (void)grrl_cases_learn(&f.base, &f.config, good, 3.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, bad, 0.0f);
+    }
+    grrl_cases_begin_trial(&f.base, &f.config);
+}
+
+/* An object of another kind: what was expected does not come, and older rewards count less, in the
+ * next trial, too; but one of each case stays. */
+static void refuted_expectations_weaken_older_rewards(void **state)
+{
+    (void)state;
+    struct grrl_context good = context(0, 0);
+    struct grrl_context bad = context(2, 1);
+    learn_an_object(&good, &bad);
+    struct grrl_context other = context(0, 4);
+    (void)grrl_cases_learn(&f.base, &f.config, &other, 2.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, &other, 2.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    float trusted = estimate(&good);
+    float hoped = estimate(&other);
+    assert_true(trusted > 2.0f && hoped > 1.0f && f.base.log_odds == f.config.confidence);
+    for (int push = 0; push < 2; push++)
+        (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+    assert_true(f.base.log_odds < -1.0f);
+    assert_true(estimate(&good) < 0.5f && estimate(&other) < hoped - 0.3f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    assert_true(f.base.log_odds == f.config.confidence);
+    assert_true(estimate(&good) < 0.5f);
+    assert_int_equal(f.base.cases[2].n, 1);
+    assert_true(f.base.cases[2].value == 2.0f);
+}
+
+/* The same failure in a trial that went as expected is one reward among others. */
+static void a_failure_without_doubt_weakens_nothing(void **state)
+{
+    (void)state;
+    struct grrl_context good = context(0, 0);
+    struct grrl_context bad = context(2, 1);
+    learn_an_object(&good, &bad);
+    (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+    for (int push = 0; push < 4; push++) {
+        (void)grrl_cases_learn(&f.base, &f.config, &good, 3.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, &bad, 0.0f);
+    }
+    assert_true(f.base.log_odds > 0.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    assert_true(estimate(&good) > 1.7f);
+    assert_int_equal(f.base.cases[0].n, f.config.memory);
+}
+
+static void what_was_to_be_expected_raises_no_doubt(void **state)
+{
+    (void)state;
+    struct grrl_context good = context(0, 0);
+    struct grrl_context bad = context(2, 1);
+    learn_an_object(&good, &bad);
+    f.base.log_odds = 0.0f;
+    (void)grrl_cases_learn(&f.base, &f.config, &bad, 0.0f); /* a failure, as ever */
+    assert_true(f.base.log_odds > 0.0f);
+    f.base.log_odds = 0.0f;
+    (void)grrl_cases_learn(&f.base, &f.config, &good, 1.0f); /* less than usual, but something */
+    assert_true(f.base.log_odds > 0.0f);
+    f.base.log_odds = 0.0f;
+    (void)grrl_cases_learn(&f.base, &f.config, &bad, 1.0f);
+    assert_true(f.base.log_odds < 0.0f);
+}
+
+static void nothing_known_can_not_be_doubted(void **state)
+{
+    (void)state;
+    grrl_cases_begin_trial(&f.base, &f.config);
+    for (int push = 0; push < 50; push++) {
+        struct grrl_context any = random_context();
+        (void)grrl_cases_learn(&f.base, &f.config, &any, 0.0f);
+    }
+    assert_true(f.base.log_odds == 0.0f);
+}
+
+static void doubt_has_bounds(void **state)
+{
+    (void)state;
+    struct grrl_context good = context(0, 0);
+    struct grrl_context bad = context(2, 1);
+    f.config.memory = 50;
+    learn_an_object(&good, &bad);
+    float least = 0.0f;
+    for (int push = 0; push < 200; push++) {
+        struct grrl_context any = random_context();
+        bool expected = grrl_random_below(&f.random, 2) == 0;
+        (void)grrl_cases_learn(&f.base, &f.config, push % 3 == 0 ? &any : &good,
+                               expected ? 3.0f : 0.0f);
+        least = f.base.log_odds < least ? f.base.log_odds : least;
+        assert_true(f.base.log_odds >= -4.0f);
+        assert_true(f.base.log_odds <= f.config.confidence);
+    }
+    assert_true(least < -1.0f);
+    trust_always();
+    for (int push = 0; push < 100; push++)
+        (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    assert_true(f.base.log_odds == f.config.confidence && f.base.cases[0].n_new == 0);
+}
+
+static void newer_rewards_push_out_older_ones(void **state)
+{
+    (void)state;
+    struct grrl_context a = context(0, 0);
+    trust_always();
+    for (int i = 0; i < 4; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, &a, 1.0f);
+    assert_int_equal(f.base.cases[0].n, 0);
+    assert_int_equal(f.base.cases[0].n_new, 4);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    grrl_cases_begin_trial(&f.base, &f.config); /* once more changes nothing */
+    assert_int_equal(f.base.cases[0].n, 4);
+    assert_int_equal(f.base.cases[0].n_new, 0);
+    for (int i = 0; i < 2; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, &a, 6.0f);
+    grrl_cases_begin_trial(&f.base, &f.config);
+    assert_int_equal(f.base.cases[0].n, 5); /* three ones and two sixes */
+    assert_true(fabsf(f.base.cases[0].value - 3.0f) < 1e-5f);
+}
+
+static void the_case_not_met_for_the_longest_time_makes_room(void **state)
+{
+    (void)state;
+    struct grrl_context a = context(0, 0);
+    struct grrl_context b = context(1, 0);
+    struct grrl_context c = context(2, 0);
+    grrl_cases_init(&f.base, f.cases, 2);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), 0);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &b, 1.0f), 1);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), 0);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &c, 1.0f), 1);
+    assert_int_equal(f.base.n, 2);
+    assert_int_equal(f.base.evictions, 1);
+    assert_int_equal(f.base.high_water, 2);
+    assert_memory_equal(&f.base.cases[1].context, &c, sizeof c);
+    grrl_cases_init(&f.base, NULL, 0);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), GRRL_NO_CASE);
+    assert_true(estimate(&a) == f.config.prior);
+}
+
+static void a_wrong_configuration_is_refused(void **state)
+{
+    (void)state;
+    const char *field = NULL;
+    assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_OK);
+    f.config.mismatch = NAN;
+    assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
+    assert_string_equal(field, "cases.mismatch");
+    grrl_case_config_default(&f.config);
+    f.config.prior_weight = 0.0f;
+    assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
+    assert_string_equal(field, "cases.prior_weight");
+    grrl_case_config_default(&f.config);
+    f.config.confidence = -0.5f;
+    assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
+    assert_string_equal(field, "cases.confidence");
+    grrl_case_config_default(&f.config);
+    f.config.parts = GRRL_ALL_CONTEXT_PARTS + 1u;
+    assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
+    assert_string_equal(field, "cases.parts");
+}
+
+static struct memory_file file = {.calls_left = -1};
+
+static void save_some(void)
+{
+    for (int i = 0; i < 12; i++) {
+        struct grrl_context a = random_context();
+        (void)grrl_cases_learn(&f.base, &f.config, &a, (float)(i % 3));
+        if (i == 6)
+            grrl_cases_begin_trial(&f.base, &f.config);
+    }
+    file.size = file.at = 0;
+    const struct grrl_experience_io io = memory_file_io(&file);
+    assert_int_equal(grrl_cases_save(&f.base, &io), GRRL_OK);
+}
+
+static void cases_come_back_from_a_file(void **state)
+{
+    (void)state;
+    save_some();
+    struct grrl_case cases[CAPACITY];
+    struct grrl_case_base again;
+    const struct grrl_experience_io io = memory_file_io(&file);
+    grrl_cases_init(&again, cases, CAPACITY);
+    assert_int_equal(grrl_cases_load(&again, &io), GRRL_OK);
+    assert_int_equal(file.at, file.size);
+    assert_int_equal(again.n, f.base.n);
+    assert_int_equal(again.clock, f.base.clock);
+    assert_true(again.log_odds == f.base.log_odds);
+    assert_memory_equal(again.cases, f.base.cases, f.base.n * sizeof f.base.cases[0]);
+    grrl_cases_init(&again, cases, f.base.n - 1);
+    file.at = 0;
+    assert_int_equal(grrl_cases_load(&again, &io), GRRL_ERR_FULL);
+    assert_int_equal(again.n, 0);
+}
+
+static void a_damaged_file_is_refused(void **state)
+{
+    (void)state;
+    save_some();
+    const struct grrl_experience_io io = memory_file_io(&file);
+    const size_t whole = file.size;
+    for (file.size = 0; file.size < whole; ++file.size) {
+        file.at = 0;
+        assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_IO);
+        assert_int_equal(f.base.n, 0);
+    }
+    for (size_t i = 0; i < whole; i++) {
+        file.bytes[i] ^= 0x40;
+        file.at = 0;
+        assert_int_not_equal(grrl_cases_load(&f.base, &io), GRRL_OK);
+        assert_int_equal(f.base.n, 0);
+        file.bytes[i] ^= 0x40;
+    }
+    file.at = 0;
+    assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_OK);
+}
+
+/* A whole file of version 1, without a case. */
+static void an_older_file_is_told_from_a_damaged_one(void **state)
+{
+    (void)state;
+    static const uint8_t older[] = {'G', 'R', 'R', 'L', 'c', 'a', 's', 0, 1,    0,    9,    0,
+                                    0,   0,   0,   0,   0,   0,   0,   0, 0xc0, 0x50, 0xc1, 0xb2};
+    memcpy(file.bytes, older, sizeof older);
+    file.size = sizeof older;
+    file.at = 0;
+    const struct grrl_experience_io io = memory_file_io(&file);
+    assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_VERSION);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(nothing_known_is_worth_the_prior, set_up),
+        cmocka_unit_test_setup(an_estimate_is_the_weighted_mean_of_all_rewards, set_up),
+        cmocka_unit_test_setup(parts_left_out_do_not_count, set_up),
+        cmocka_unit_test_setup(the_latest_rewards_count, set_up),
+        cmocka_unit_test_setup(refuted_expectations_weaken_older_rewards, set_up),
+        cmocka_unit_test_setup(a_failure_without_doubt_weakens_nothing, set_up),
+        cmocka_unit_test_setup(what_was_to_be_expected_raises_no_doubt, set_up),
+        cmocka_unit_test_setup(nothing_known_can_not_be_doubted, set_up),
+        cmocka_unit_test_setup(doubt_has_bounds, set_up),
+        cmocka_unit_test_setup(newer_rewards_push_out_older_ones, set_up),
+        cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
+        cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
+        cmocka_unit_test_setup(cases_come_back_from_a_file, set_up),
+        cmocka_unit_test_setup(a_damaged_file_is_refused, set_up),
+        cmocka_unit_test_setup(an_older_file_is_told_from_a_damaged_one, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
