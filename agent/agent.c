@@ -29,7 +29,7 @@ void agent_event(struct grrl_agent *agent, enum grrl_agent_event_kind kind)
     struct grrl_agent_event event = {
         .kind = kind,
         .decision = &agent->decision,
-        .lesson = &agent->lesson,
+        .update = &agent->update,
         .trial_id = agent->trial_id,
         .pushes = agent->cmd_seq,
         .outcome = agent->trial.outcome,

@@ -22,7 +22,7 @@
 enum grrl_agent_event_kind {
     GRRL_AGENT_NOTE,     /* something to tell the user: text */
     GRRL_AGENT_DECIDED,  /* decision */
-    GRRL_AGENT_LEARNED,  /* lesson, trial_id, pushes */
+    GRRL_AGENT_LEARNED,  /* update, trial_id, pushes */
     GRRL_AGENT_TRIAL_END /* outcome, trial_id, pushes; a good time to save */
 };
 
@@ -30,7 +30,7 @@ struct grrl_agent_event {
     enum grrl_agent_event_kind kind;
     const char *text;
     const grrl_decision_t *decision;
-    const struct grrl_lesson *lesson;
+    const struct grrl_update *update;
     int32_t trial_id;
     int32_t pushes;
     int8_t outcome; /* GRRL_TRIAL_T_.. */
@@ -95,7 +95,7 @@ struct grrl_agent {
     grrl_push_command_t command;
     struct grrl_wire_model model;
     struct grrl_wire_points points;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     uint8_t bytes[GRRL_WIRE_MAX_BYTES];
 };
 

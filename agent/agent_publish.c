@@ -12,7 +12,7 @@ static void publish(struct grrl_agent *agent, const char *channel, int size,
         agent_note(agent, "LCM could not send a message");
 }
 
-static void make_links(const struct grrl_model *model, struct grrl_wire_model *out)
+static void make_links(const struct grrl_model *model, float large_m, struct grrl_wire_model *out)
 {
     for (uint8_t i = 0; i < model->n_bodies; i++) {
         const struct grrl_body *body = &model->body[i];
@@ -22,7 +22,7 @@ static void make_links(const struct grrl_model *model, struct grrl_wire_model *o
         out->link_angle[i] = grrl_atan2(body->axis.y, body->axis.x);
         out->link_length[i] = body->length_m;
         out->link_width[i] = body->width_m;
-        out->link_size[i] = (int8_t)(body->properties & 0x7f);
+        out->link_size[i] = (int8_t)grrl_size_of(body, large_m);
     }
 }
 
@@ -66,7 +66,7 @@ void agent_make_model(struct grrl_agent *agent)
     message->n_links = model->n_bodies;
     message->n_joints = model->n_joints;
     message->n_features = model->n_features;
-    make_links(model, &agent->model);
+    make_links(model, agent->config.learner.large_m, &agent->model);
     make_joints(model, &agent->model);
     make_features(model, &agent->model);
 }
@@ -111,8 +111,8 @@ void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *d
         message->experience = (int32_t)choice->from.experience;
     }
     message->phi = choice->phi;
-    message->last_reward = agent->lesson.reward;
-    message->last_target = agent->lesson.target;
+    message->last_reward = agent->update.reward;
+    message->last_target = agent->update.target;
     make_command(agent, &decision->push);
 }
 

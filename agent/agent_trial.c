@@ -25,7 +25,7 @@ static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
     agent->stage = STAGE_WATCHING;
     memset(&agent->status, 0, sizeof agent->status);
     memset(&agent->decision, 0, sizeof agent->decision);
-    memset(&agent->lesson, 0, sizeof agent->lesson);
+    memset(&agent->update, 0, sizeof agent->update);
     grrl_learner_begin_trial(&agent->learner, (uint32_t)trial_id);
 }
 
@@ -40,7 +40,7 @@ static void learn(struct grrl_agent *agent, bool ended)
 {
     if (agent->cmd_seq == 0 || !agent->adopted)
         return;
-    enum grrl_status status = grrl_learner_learn(&agent->learner, ended, &agent->lesson);
+    enum grrl_status status = grrl_learner_learn(&agent->learner, ended, &agent->update);
     if (status != GRRL_OK)
         agent_note(agent, grrl_status_text(status));
     else

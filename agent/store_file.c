@@ -184,7 +184,7 @@ static bool write_file(const struct grrl_file_calls *calls, const char *path,
     struct stream stream;
     if (!open_stream(&stream, calls, path, O_WRONLY | O_CREAT | O_TRUNC))
         return false;
-    struct grrl_experience_io io = {.context = &stream, .write = write_bytes};
+    struct grrl_io io = {.context = &stream, .write = write_bytes};
     if (grrl_learner_save(learner, &io) == GRRL_OK && flush(&stream) &&
         calls->sync(calls->context, stream.fd) != 0)
         stream.error = errno;
@@ -290,7 +290,7 @@ static enum grrl_status read_file(struct stream *stream, struct grrl_learner *le
                                   uint32_t *lost)
 {
     uint8_t more;
-    struct grrl_experience_io io = {.context = stream, .read = read_bytes};
+    struct grrl_io io = {.context = stream, .read = read_bytes};
     enum grrl_status status = grrl_learner_load_torn(learner, &io, lost);
     if (status == GRRL_OK && read_bytes(stream, &more, 1) == 0)
         return GRRL_ERR_CORRUPT; /* save writes nothing behind the last record */

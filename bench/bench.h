@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-#include "grrl/structure/match.h"
 #include "grrl/base/random.h"
+#include "grrl/structure/match.h"
 
 #ifdef __cplusplus
 extern "C" {

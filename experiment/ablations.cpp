@@ -54,7 +54,7 @@ void add_paper(std::vector<Policy> &table)
         {"no-ie", "no Interval Estimation: the best mean",
          [](grrl_learner_config &c) { c.policy.z = 0.0f; }},
         {"no-size", "no property: every link is small",
-         [](grrl_learner_config &c) { c.perception.large_m = 1000.0f; }},
+         [](grrl_learner_config &c) { c.large_m = 1000.0f; }},
         {"gamma-0", "nothing but the immediate reward",
          [](grrl_learner_config &c) { c.policy.gamma = 0.0f; }},
         {"gamma-0.9", "later rewards count nearly as much",

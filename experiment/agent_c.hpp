@@ -4,8 +4,8 @@
 
 extern "C" {
 #include "agent.h"
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/learner/learner.h"
+#include "grrl/learner/relational_q/experience.h"
 #include "grrl/perception/perception.h"
 }
 

@@ -91,7 +91,7 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     if (experience.empty())
         return;
     Reader reader{&experience, 0};
-    grrl_experience_io io{};
+    grrl_io io{};
     io.context = &reader;
     io.read = read_bytes;
     must(grrl_learner_load(&agent_->learner, &io), "the experience does not load");
@@ -105,7 +105,7 @@ AgentSide::~AgentSide()
 Bytes AgentSide::experience() const
 {
     Bytes bytes;
-    grrl_experience_io io{};
+    grrl_io io{};
     io.context = &bytes;
     io.write = append_bytes;
     must(grrl_learner_save(&agent_->learner, &io), "the experience does not save");

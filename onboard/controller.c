@@ -140,16 +140,16 @@ static void choose(struct onboard_controller *controller)
 static void learn(struct onboard_controller *controller, struct onboard_packet *packet)
 {
     bool ended = onboard_get(packet, 1) != 0;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     uint32_t start = now(controller);
-    enum grrl_status status = grrl_learner_learn(&controller->learner, ended, &lesson);
+    enum grrl_status status = grrl_learner_learn(&controller->learner, ended, &update);
     count(controller, ONBOARD_STEP_LEARN, start);
-    begin_answer(controller, ONBOARD_LESSON, status);
+    begin_answer(controller, ONBOARD_UPDATE, status);
     if (status == GRRL_OK) {
         const struct grrl_learner_usage usage = grrl_learner_usage_of(&controller->learner);
-        onboard_put_lesson(&controller->answer, &lesson, &usage);
+        onboard_put_update(&controller->answer, &update, &usage);
     }
-    add_answer(controller, &controller->hashes.lessons);
+    add_answer(controller, &controller->hashes.updates);
 }
 
 static int hash_bytes(void *context, const void *bytes, size_t size)
@@ -162,14 +162,14 @@ static int hash_bytes(void *context, const void *bytes, size_t size)
 
 static void close_run(struct onboard_controller *controller)
 {
-    struct grrl_experience_io io = {.context = controller, .write = hash_bytes};
+    struct grrl_io io = {.context = controller, .write = hash_bytes};
     controller->store_hash = HASH_START;
     controller->store_bytes = 0;
     enum grrl_status status = grrl_learner_save(&controller->learner, &io);
     begin_answer(controller, ONBOARD_STORE, status);
     onboard_put(&controller->answer, controller->hashes.models, 8);
     onboard_put(&controller->answer, controller->hashes.decisions, 8);
-    onboard_put(&controller->answer, controller->hashes.lessons, 8);
+    onboard_put(&controller->answer, controller->hashes.updates, 8);
     onboard_put(&controller->answer, controller->store_hash, 8);
 }
 
@@ -178,9 +178,9 @@ static enum grrl_status compare(struct onboard_controller *controller,
 {
     uint64_t models = onboard_get(packet, 8);
     uint64_t decisions = onboard_get(packet, 8);
-    uint64_t lessons = onboard_get(packet, 8);
+    uint64_t updates = onboard_get(packet, 8);
     bool same = models == controller->hashes.models && decisions == controller->hashes.decisions &&
-                lessons == controller->hashes.lessons;
+                updates == controller->hashes.updates;
     begin_answer(controller, ONBOARD_DONE, GRRL_OK);
     return same ? GRRL_OK : GRRL_ERR_CORRUPT;
 }

@@ -32,7 +32,7 @@ struct onboard_cost {
 struct onboard_hashes {
     uint64_t models; /* with the structure as a term */
     uint64_t decisions;
-    uint64_t lessons;
+    uint64_t updates;
 };
 
 struct onboard_controller {

@@ -133,7 +133,6 @@ void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *m
         put_vec2(packet, body->axis);
         onboard_put_float(packet, body->length_m);
         onboard_put_float(packet, body->width_m);
-        onboard_put(packet, body->properties, 8);
     }
     for (int i = 0; i < model->n_joints; i++)
         put_joint(packet, &model->joint[i]);
@@ -170,13 +169,13 @@ void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decis
     onboard_put_float(packet, choice->phi);
 }
 
-void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson,
+void onboard_put_update(struct onboard_packet *packet, const struct grrl_update *update,
                         const struct grrl_learner_usage *usage)
 {
-    onboard_put_float(packet, lesson->reward);
-    onboard_put_float(packet, lesson->target);
-    onboard_put(packet, lesson->experience, 4);
-    onboard_put(packet, lesson->updated_case, 4);
+    onboard_put_float(packet, update->reward);
+    onboard_put_float(packet, update->target);
+    onboard_put(packet, update->experience, 4);
+    onboard_put(packet, update->updated_case, 4);
     onboard_put(packet, usage->n, 4);
     onboard_put(packet, usage->capacity, 4);
     onboard_put(packet, usage->evictions, 4);
@@ -201,7 +200,6 @@ static void get_body(struct onboard_packet *packet, struct grrl_body *body)
     body->axis = get_vec2(packet);
     body->length_m = onboard_get_float(packet);
     body->width_m = onboard_get_float(packet);
-    body->properties = onboard_get(packet, 8);
 }
 
 static void get_joint(struct onboard_packet *packet, struct grrl_joint *joint)
@@ -279,13 +277,13 @@ bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *d
            choice->direction < GRRL_DIRECTIONS && choice->reason <= GRRL_CHOICE_FOREIGN;
 }
 
-bool onboard_get_lesson(struct onboard_packet *packet, struct grrl_lesson *lesson,
+bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
                         struct grrl_learner_usage *usage)
 {
-    lesson->reward = onboard_get_float(packet);
-    lesson->target = onboard_get_float(packet);
-    lesson->experience = (uint32_t)onboard_get(packet, 4);
-    lesson->updated_case = (uint32_t)onboard_get(packet, 4);
+    update->reward = onboard_get_float(packet);
+    update->target = onboard_get_float(packet);
+    update->experience = (uint32_t)onboard_get(packet, 4);
+    update->updated_case = (uint32_t)onboard_get(packet, 4);
     usage->n = (uint32_t)onboard_get(packet, 4);
     usage->capacity = (uint32_t)onboard_get(packet, 4);
     usage->evictions = (uint32_t)onboard_get(packet, 4);

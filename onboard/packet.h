@@ -11,8 +11,8 @@
  *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
  *   PERCEIVE, CHOOSE, CLOSE    nothing
  *   LEARN    ended (1)
- *   EXPECT   the hashes so far of models, decisions and lessons (8 each): in recordings only
- *   DONE, MODEL, DECISION, LESSON, STORE    answers; a status (1) and, when it is 0, what the
+ *   EXPECT   the hashes so far of models, decisions and updates (8 each): in recordings only
+ *   DONE, MODEL, DECISION, UPDATE, STORE    answers; a status (1) and, when it is 0, what the
  *            functions below write
  *   REFUSED  a status (1): there is no such packet, or not now
  *   BAD      damaged frames so far (4): the last one is to be sent again. On a line only
@@ -47,7 +47,7 @@ enum onboard_packet_type {
     ONBOARD_DONE = 64,
     ONBOARD_MODEL,
     ONBOARD_DECISION,
-    ONBOARD_LESSON,
+    ONBOARD_UPDATE,
     ONBOARD_STORE,
     ONBOARD_REFUSED,
     ONBOARD_BAD
@@ -55,7 +55,7 @@ enum onboard_packet_type {
 
 /* The most bytes of a packet: a model with everything in it, or a frame. */
 #define ONBOARD_MODEL_BYTES                                                                        \
-    (5 + 36 * GRRL_MAX_LINKS + 59 * GRRL_MAX_JOINTS + 13 * GRRL_MAX_FEATURES)
+    (5 + 28 * GRRL_MAX_LINKS + 59 * GRRL_MAX_JOINTS + 13 * GRRL_MAX_FEATURES)
 #define ONBOARD_FRAME_BYTES (3 + 12 * GRRL_MAX_FEATURES)
 #define ONBOARD_MAX_BYTES                                                                          \
     (ONBOARD_MODEL_BYTES > ONBOARD_FRAME_BYTES ? ONBOARD_MODEL_BYTES : ONBOARD_FRAME_BYTES)
@@ -99,14 +99,14 @@ bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *poi
 
 void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model);
 void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision);
-void onboard_put_lesson(struct onboard_packet *packet, const struct grrl_lesson *lesson,
+void onboard_put_update(struct onboard_packet *packet, const struct grrl_update *update,
                         const struct grrl_learner_usage *usage);
 
 /* The other way round, for who asked: from packet->at on. False, and the result is unspecified, for
  * bytes that are none, or with a count or an index beyond what there is room for. */
 bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
 bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
-bool onboard_get_lesson(struct onboard_packet *packet, struct grrl_lesson *lesson,
+bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
                         struct grrl_learner_usage *usage);
 
 #endif

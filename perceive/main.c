@@ -21,6 +21,9 @@ enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 3
 /* Points within less than this, in standard deviations of the noise, show nothing. */
 #define SMALL_WORLD 20.0f
 
+/* Links from this length on are called large; as for the learner. */
+#define LARGE_M 0.15f
+
 /* A pixel is given to the library as a millimetre. */
 static const float pixel_m = 0.001f;
 
@@ -186,7 +189,8 @@ static enum grrl_status observe(const struct grrl_tracks *tracks)
     return grrl_perception_update(&perception);
 }
 
-static enum grrl_status print_term(const struct grrl_model *model, char *text, size_t capacity)
+static enum grrl_status print_term(const struct grrl_model *model, float large_m, char *text,
+                                   size_t capacity)
 {
     static struct grrl_term_node nodes[TERM_NODES];
     struct grrl_term_store store;
@@ -195,7 +199,7 @@ static enum grrl_status print_term(const struct grrl_model *model, char *text, s
     struct grrl_edge edges[GRRL_MAX_JOINTS];
     grrl_term term;
     grrl_term_store_init(&store, nodes, TERM_NODES);
-    grrl_model_graph(model, &graph, names, edges);
+    grrl_relational_state_of(model, large_m, &graph, names, edges);
     enum grrl_status status =
         grrl_graph_to_term(&store, &graph, names, edges, model->n_joints, true, &term);
     return status == GRRL_OK ? grrl_term_print(&store, term, capacity, text, NULL) : status;
@@ -260,7 +264,7 @@ static int report_model(const struct grrl_perceive_options *options,
 {
     static char term[TERM_BYTES];
     const struct grrl_model *model = grrl_perception_model(&perception);
-    enum grrl_status status = print_term(model, term, sizeof term);
+    enum grrl_status status = print_term(model, LARGE_M, term, sizeof term);
     if (status != GRRL_OK)
         return fail(grrl_status_text(status));
     double per_metre = 1.0 / (double)unit.metres;

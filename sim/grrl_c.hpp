@@ -4,10 +4,10 @@
 
 extern "C" {
 #include "grrl/base/config.h"
-#include "grrl/structure/graph.h"
-#include "grrl/structure/match.h"
 #include "grrl/base/random.h"
 #include "grrl/base/status.h"
+#include "grrl/structure/graph.h"
+#include "grrl/structure/match.h"
 #include "grrl/structure/term.h"
 }
 

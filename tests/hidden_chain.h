@@ -70,15 +70,13 @@ enum grrl_status grrl_perception_update(struct grrl_perception *perception)
     memset(model, 0, sizeof *model);
     model->n_bodies = world.n_bodies;
     for (uint8_t i = 0; i < world.n_bodies; i++) {
-        bool single = world.first[i] == world.last[i];
         float middle = 0.05f * (float)(world.first[i] + world.last[i]);
         model->body[i] =
             (struct grrl_body){.number = (uint16_t)(world.first[i] + 1),
                                .n_features = 1,
                                .centroid_m = {middle, 0.0f},
                                .axis = {1.0f, 0.0f},
-                               .length_m = 0.1f * (float)(world.last[i] - world.first[i] + 1),
-                               .properties = single ? GRRL_PROPERTY_SMALL : GRRL_PROPERTY_LARGE};
+                               .length_m = 0.1f * (float)(world.last[i] - world.first[i] + 1)};
         model->feature_m[i] = model->body[i].centroid_m;
         model->feature_body[i] = i;
     }
@@ -102,25 +100,6 @@ const struct grrl_model *grrl_perception_model(const struct grrl_perception *per
 {
     (void)perception;
     return &world.model;
-}
-
-void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
-                      struct grrl_name *names, struct grrl_edge *edges)
-{
-    grrl_graph_clear(graph);
-    for (uint8_t i = 0; i < model->n_bodies; i++) {
-        assert_int_equal(grrl_graph_add_link(graph, model->body[i].properties, NULL), GRRL_OK);
-        if (names != NULL)
-            names[i] = (struct grrl_name){GRRL_NAME_FEATURES, model->body[i].number};
-    }
-    for (uint8_t j = 0; j < model->n_joints; j++) {
-        const struct grrl_joint *joint = &model->joint[j];
-        assert_int_equal(
-            grrl_graph_add_joint(graph, joint->a, joint->b, (enum grrl_joint_type)joint->type),
-            GRRL_OK);
-        if (edges != NULL)
-            edges[j] = (struct grrl_edge){joint->a, joint->b, joint->type};
-    }
 }
 
 static void world_start(const char *joints)

@@ -1,4 +1,4 @@
-/* memory_file.h: a file in memory, for what saves and loads through grrl_experience_io. */
+/* memory_file.h: a file in memory, for what saves and loads through grrl_io. */
 #ifndef GRRL_MEMORY_FILE_H
 #define GRRL_MEMORY_FILE_H
 
@@ -41,10 +41,9 @@ static inline int memory_file_read(void *context, void *bytes, size_t size)
     return 0;
 }
 
-static inline struct grrl_experience_io memory_file_io(struct memory_file *file)
+static inline struct grrl_io memory_file_io(struct memory_file *file)
 {
-    return (struct grrl_experience_io){
-        .context = file, .write = memory_file_write, .read = memory_file_read};
+    return (struct grrl_io){.context = file, .write = memory_file_write, .read = memory_file_read};
 }
 
 #endif

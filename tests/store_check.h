@@ -5,8 +5,8 @@
 #ifndef GRRL_STORE_CHECK_H
 #define GRRL_STORE_CHECK_H
 
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/relational_q/experience.h"
 
 static inline int abs_difference(int a, int b)
 {

@@ -17,8 +17,8 @@
 
 #include <cmocka.h>
 
-#include "grrl/structure/graph.h"
 #include "grrl/base/random.h"
+#include "grrl/structure/graph.h"
 #include "grrl/structure/term.h"
 
 _Static_assert(GRRL_MAX_LINKS >= 10 && GRRL_MAX_JOINTS >= 16, "the structures of these tests fit");

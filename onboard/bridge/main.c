@@ -185,7 +185,7 @@ static void report(const struct run *run, const struct bridge_result *result)
                  counts->damaged_in, counts->resent, counts->late);
     (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
                  "\nexperiences %016" PRIx64 "\n",
-                 result->models, result->decisions, result->lessons, result->experiences);
+                 result->models, result->decisions, result->updates, result->experiences);
 }
 
 static bool run_bridge(struct run *run, lcm_t *lcm)

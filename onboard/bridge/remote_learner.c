@@ -110,11 +110,11 @@ enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_d
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
-                                    struct grrl_lesson *lesson)
+                                    struct grrl_update *update)
 {
     (void)learner;
-    enum grrl_status status = ask_for(ONBOARD_LEARN, ended, 1, ONBOARD_LESSON);
-    return unless(status != GRRL_OK || onboard_get_lesson(&line->answer, lesson, &usage), status);
+    enum grrl_status status = ask_for(ONBOARD_LEARN, ended, 1, ONBOARD_UPDATE);
+    return unless(status != GRRL_OK || onboard_get_update(&line->answer, update, &usage), status);
 }
 
 /* The controller forgets a trial when the next one begins; until then it is asked nothing. */
@@ -148,7 +148,7 @@ bool bridge_learner_close(struct bridge_result *result)
         return false;
     result->models = onboard_get(&line->answer, 8);
     result->decisions = onboard_get(&line->answer, 8);
-    result->lessons = onboard_get(&line->answer, 8);
+    result->updates = onboard_get(&line->answer, 8);
     result->experiences = onboard_get(&line->answer, 8);
     if (!onboard_packet_used_up(&line->answer))
         fail("the controller's last answer has another length than expected");

@@ -17,7 +17,7 @@ void bridge_learner_use(struct bridge_line *line);
 struct bridge_result {
     uint64_t models;
     uint64_t decisions;
-    uint64_t lessons;
+    uint64_t updates;
     uint64_t experiences;
 };
 

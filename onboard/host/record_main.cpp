@@ -62,7 +62,7 @@ void expect(Run &run)
 {
     const onboard_hashes &hashes = run.controller->hashes;
     onboard_packet_begin(&run.packet, ONBOARD_EXPECT);
-    for (uint64_t hash : {hashes.models, hashes.decisions, hashes.lessons})
+    for (uint64_t hash : {hashes.models, hashes.decisions, hashes.updates})
         onboard_put(&run.packet, hash, 8);
     write(run);
 }
@@ -148,8 +148,9 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, uint32_t number)
         pushes++;
         settle(run, world);
         grrl_graph believed;
-        grrl_model_graph(grrl_perception_model(&run.controller->learner.perception), &believed,
-                         nullptr, nullptr);
+        const grrl_learner &learner = run.controller->learner;
+        grrl_relational_state_of(grrl_perception_model(&learner.perception), learner.config.large_m,
+                                 &believed, nullptr, nullptr);
         found = supervisor.judge(believed).correct;
         send(run, ONBOARD_LEARN, found ? 1 : 0, 1);
         expect(run);

@@ -51,7 +51,7 @@ int main(int argc, char **argv)
     }
     (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
                  "\nexperiences %016" PRIx64 "\n",
-                 controller.hashes.models, controller.hashes.decisions, controller.hashes.lessons,
+                 controller.hashes.models, controller.hashes.decisions, controller.hashes.updates,
                  controller.store_hash);
     return status == GRRL_OK ? 0 : 1;
 }

@@ -121,7 +121,7 @@ static int replay(const char *path)
     write_line("pushes", progress.pushes);
     write_hash("models", controller.hashes.models);
     write_hash("decisions", controller.hashes.decisions);
-    write_hash("lessons", controller.hashes.lessons);
+    write_hash("updates", controller.hashes.updates);
     write_hash("experiences", controller.store_hash);
     write_costs();
     write_memory();

@@ -130,7 +130,7 @@ static void watch(bool pushing, float turn)
 static void use(void)
 {
     struct grrl_decision decision;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     grrl_learner_begin_trial(&learner, 1);
     watch(false, 0.0f);
     REQUIRE(grrl_learner_perceive(&learner) == GRRL_OK);
@@ -139,7 +139,7 @@ static void use(void)
         watch(true, 0.1f * (float)i);
     watch(false, 0.1f * (float)TURNS);
     REQUIRE(grrl_learner_perceive(&learner) == GRRL_OK);
-    REQUIRE(grrl_learner_learn(&learner, true, &lesson) == GRRL_OK);
+    REQUIRE(grrl_learner_learn(&learner, true, &update) == GRRL_OK);
 }
 
 static void init(enum grrl_policy_kind kind)
@@ -154,7 +154,7 @@ static void init(enum grrl_policy_kind kind)
 
 static void save(void)
 {
-    struct grrl_experience_io out = {.context = &saved, .write = write_bytes};
+    struct grrl_io out = {.context = &saved, .write = write_bytes};
     saved.size = 0;
     REQUIRE(grrl_learner_save(&learner, &out) == GRRL_OK);
 }
@@ -162,7 +162,7 @@ static void save(void)
 /* What was whole of a torn file is a file of its own. */
 static void load_what_was_kept(void)
 {
-    struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+    struct grrl_io io = {.context = &file, .read = read_bytes};
     memcpy(file.bytes, saved.bytes, saved.size);
     file.size = saved.size;
     file.at = 0;
@@ -182,7 +182,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(file.bytes, data + 1, file.size);
     if ((data[0] & SIGN) != 0)
         sign_file();
-    struct grrl_experience_io io = {.context = &file, .read = read_bytes};
+    struct grrl_io io = {.context = &file, .read = read_bytes};
     uint32_t lost;
     init((data[0] & BY_PAPER) != 0 ? GRRL_POLICY_PAPER : GRRL_POLICY_LEARN);
     enum grrl_status status = grrl_learner_load_torn(&learner, &io, &lost);

@@ -272,7 +272,7 @@ static void watch(float turn, bool pushing)
 static void live_trial(uint32_t trial)
 {
     struct grrl_decision decision;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     grrl_learner_begin_trial(&learner, trial);
     watch(0.0f, false);
     bool good = grrl_learner_perceive(&learner) == GRRL_OK;
@@ -282,7 +282,7 @@ static void live_trial(uint32_t trial)
             watch(0.05f * (float)(push + 1) * (float)i, true);
         watch(0.05f * (float)(push + 1) * (float)TURNS, false);
         good = good && grrl_learner_perceive(&learner) == GRRL_OK &&
-               grrl_learner_learn(&learner, push == 3, &lesson) == GRRL_OK;
+               grrl_learner_learn(&learner, push == 3, &update) == GRRL_OK;
     }
     if (!good) {
         (void)fprintf(stderr, "fuzz_seeds: the learner does not learn\n");
@@ -301,7 +301,7 @@ static void write_store(const char *name, enum grrl_policy_kind kind, uint8_t fl
     grrl_learner_config_default(&config);
     config.policy.kind = kind;
     FILE *file = create("store", name);
-    struct grrl_experience_io io = {.context = file, .write = write_out};
+    struct grrl_io io = {.context = file, .write = write_out};
     bool good = grrl_learner_init(&learner, &config, &memory) == GRRL_OK;
     for (uint32_t trial = 1; good && trial <= 3; trial++)
         live_trial(trial);

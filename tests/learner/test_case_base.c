@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "grrl/learner/cases/case_base.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/cases/case_base.h"
 #include "memory_file.h"
 
 #define SEED UINT64_C(20080631)
@@ -319,7 +319,7 @@ static void save_some(void)
             grrl_cases_begin_trial(&f.base, &f.config);
     }
     file.size = file.at = 0;
-    const struct grrl_experience_io io = memory_file_io(&file);
+    const struct grrl_io io = memory_file_io(&file);
     assert_int_equal(grrl_cases_save(&f.base, &io), GRRL_OK);
 }
 
@@ -329,7 +329,7 @@ static void cases_come_back_from_a_file(void **state)
     save_some();
     struct grrl_case cases[CAPACITY];
     struct grrl_case_base again;
-    const struct grrl_experience_io io = memory_file_io(&file);
+    const struct grrl_io io = memory_file_io(&file);
     grrl_cases_init(&again, cases, CAPACITY);
     assert_int_equal(grrl_cases_load(&again, &io), GRRL_OK);
     assert_int_equal(file.at, file.size);
@@ -347,7 +347,7 @@ static void a_damaged_file_is_refused(void **state)
 {
     (void)state;
     save_some();
-    const struct grrl_experience_io io = memory_file_io(&file);
+    const struct grrl_io io = memory_file_io(&file);
     const size_t whole = file.size;
     for (file.size = 0; file.size < whole; ++file.size) {
         file.at = 0;
@@ -374,7 +374,7 @@ static void an_older_file_is_told_from_a_damaged_one(void **state)
     memcpy(file.bytes, older, sizeof older);
     file.size = sizeof older;
     file.at = 0;
-    const struct grrl_experience_io io = memory_file_io(&file);
+    const struct grrl_io io = memory_file_io(&file);
     assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_VERSION);
 }
 

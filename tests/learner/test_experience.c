@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/relational_q/experience.h"
 #include "store_check.h"
 
 #define SEED UINT64_C(20080627)
@@ -443,7 +443,7 @@ static void small_stores_stay_sound(void **state)
     }
 }
 
-/* The same lessons in a store with an index, in one without, and in one indexed at the end. */
+/* The same updates in a store with an index, in one without, and in one indexed at the end. */
 static void an_index_changes_nothing_that_is_recalled(void **state)
 {
     (void)state;

@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/relational_q/experience.h"
 #include "memory_file.h"
 #include "store_check.h"
 
@@ -33,14 +33,14 @@ static void init(struct fixture *fixture, uint32_t states, uint32_t experiences)
 static enum grrl_status save(const struct fixture *fixture, struct memory_file *to)
 {
     to->size = 0;
-    struct grrl_experience_io io = {.context = to, .write = memory_file_write};
+    struct grrl_io io = {.context = to, .write = memory_file_write};
     return grrl_experience_save(&fixture->store, &io);
 }
 
 static enum grrl_status load(struct fixture *fixture, struct memory_file *from)
 {
     from->at = 0;
-    struct grrl_experience_io io = {.context = from, .read = memory_file_read};
+    struct grrl_io io = {.context = from, .read = memory_file_read};
     return grrl_experience_load(&fixture->store, &io);
 }
 
@@ -177,7 +177,7 @@ static void a_torn_file_gives_what_was_whole(void **state)
         uint32_t lost;
         file.size = size;
         file.at = 0;
-        const struct grrl_experience_io io = {.context = &file, .read = memory_file_read};
+        const struct grrl_io io = {.context = &file, .read = memory_file_read};
         assert_int_equal(grrl_experience_load_torn(&copy.store, &io, &lost), GRRL_ERR_IO);
         check_store(&copy.store);
         size_t records = size + total * (size_t)EXPERIENCE > whole

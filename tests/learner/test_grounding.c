@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "grrl/learner/grounding.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/grounding.h"
 #include "grrl/structure/term.h"
 
 #define SEED UINT64_C(20080626)

@@ -64,14 +64,14 @@ static unsigned run_trial(struct fixture *fixture, const char *joints, uint32_t 
     float sum = 0.0f;
     for (unsigned pushes = 1; pushes <= MOST_PUSHES; pushes++) {
         struct grrl_decision decision;
-        struct grrl_lesson lesson;
+        struct grrl_update update;
         assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
         *hash = *hash * 31u + decision.choice.link * 6u + decision.choice.direction;
         bool ended = world_push(&decision.choice);
         assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-        assert_int_equal(grrl_learner_learn(learner, ended, &lesson), GRRL_OK);
+        assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
         check_store(&learner->store);
-        sum += lesson.reward;
+        sum += update.reward;
         if (ended) { /* every link but the first, every joint, the trial */
             assert_true(sum == 2.0f * (float)strlen(joints) + 1.0f);
             return pushes;
@@ -157,7 +157,7 @@ static struct memory_file file = {.calls_left = -1};
 static void what_was_learned_can_be_saved(void **state)
 {
     (void)state;
-    const struct grrl_experience_io io = memory_file_io(&file);
+    const struct grrl_io io = memory_file_io(&file);
     for (int i = 0; i < LEARNERS; i++) {
         uint32_t hash = 0;
         uint32_t a = 0;
@@ -213,16 +213,16 @@ static void start(struct grrl_learner *learner)
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
 }
 
-static struct grrl_lesson adopt(struct grrl_learner *learner, uint16_t number, uint8_t direction,
+static struct grrl_update adopt(struct grrl_learner *learner, uint16_t number, uint8_t direction,
                                 bool ended)
 {
     struct grrl_decision decision;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     assert_int_equal(grrl_learner_adopt(learner, number, direction, &decision), GRRL_OK);
     (void)world_push(&decision.choice);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-    assert_int_equal(grrl_learner_learn(learner, ended, &lesson), GRRL_OK);
-    return lesson;
+    assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
+    return update;
 }
 
 static void a_discovery_is_paid_once(void **state)
@@ -230,23 +230,23 @@ static void a_discovery_is_paid_once(void **state)
     (void)state;
     struct grrl_learner *learner = &one.learner;
     start(learner);
-    struct grrl_lesson lesson = adopt(learner, 1, 0, false);
-    assert_true(lesson.reward == 0.0f);
-    lesson = adopt(learner, 1, 2, false);
-    assert_true(lesson.reward == 2.0f); /* a link and a joint */
+    struct grrl_update update = adopt(learner, 1, 0, false);
+    assert_true(update.reward == 0.0f);
+    update = adopt(learner, 1, 2, false);
+    assert_true(update.reward == 2.0f); /* a link and a joint */
     world.n_bodies = 1;                 /* a belief may be given up .. */
     world.n_revealed = 0;
     world.last[0] = 3;
-    lesson = adopt(learner, 1, 0, false);
-    assert_true(lesson.reward == 0.0f);
-    lesson = adopt(learner, 1, 2, false); /* .. and come back */
-    assert_true(lesson.reward == 0.0f);
+    update = adopt(learner, 1, 0, false);
+    assert_true(update.reward == 0.0f);
+    update = adopt(learner, 1, 2, false); /* .. and come back */
+    assert_true(update.reward == 0.0f);
     world_reveal(0); /* what shows at rest is nobody's merit */
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-    lesson = adopt(learner, 1, 0, false);
-    assert_true(lesson.reward == 0.0f);
-    lesson = adopt(learner, 1, 2, true);
-    assert_true(lesson.reward == 3.0f); /* and the trial's own */
+    update = adopt(learner, 1, 0, false);
+    assert_true(update.reward == 0.0f);
+    update = adopt(learner, 1, 2, true);
+    assert_true(update.reward == 3.0f); /* and the trial's own */
 }
 
 static void targets_look_one_push_ahead(void **state)
@@ -255,19 +255,19 @@ static void targets_look_one_push_ahead(void **state)
     struct grrl_learner *learner = &one.learner;
     init(&one, GRRL_POLICY_PAPER, SEED);
     start(learner);
-    struct grrl_lesson lesson = adopt(learner, 1, 2, false);
-    assert_true(lesson.target == 2.0f);
-    assert_int_equal(lesson.experience, 0);
-    assert_int_equal(lesson.updated_case, GRRL_NO_CASE);
+    struct grrl_update update = adopt(learner, 1, 2, false);
+    assert_true(update.target == 2.0f);
+    assert_int_equal(update.experience, 0);
+    assert_int_equal(update.updated_case, GRRL_NO_CASE);
     start(learner);
     world_start("RPR");
     start(learner);
-    lesson = adopt(learner, 1, 0, false); /* in vain, but the next state is worth 2 */
-    assert_true(lesson.reward == 0.0f);
-    assert_true(lesson.target == 0.1f * 2.0f);
-    lesson = adopt(learner, 1, 2, true); /* nothing follows the end */
-    assert_true(lesson.target == 3.0f);
-    const struct grrl_q *q = &learner->store.experiences[lesson.experience].q;
+    update = adopt(learner, 1, 0, false); /* in vain, but the next state is worth 2 */
+    assert_true(update.reward == 0.0f);
+    assert_true(update.target == 0.1f * 2.0f);
+    update = adopt(learner, 1, 2, true); /* nothing follows the end */
+    assert_true(update.target == 3.0f);
+    const struct grrl_q *q = &learner->store.experiences[update.experience].q;
     assert_int_equal(q->n, 2);
     assert_true(q->value > 2.29f && q->value < 2.31f);
 }
@@ -317,10 +317,10 @@ static void a_decision_by_cases_tells_why(void **state)
     assert_int_equal(decision.choice.from.experience, GRRL_NO_EXPERIENCE);
     assert_true(decision.choice.phi == 0.0f && decision.choice.value == 0.5f);
     start(learner);
-    struct grrl_lesson lesson = adopt(learner, 1, 2, false);
-    assert_true(lesson.reward == 2.0f && lesson.target == 2.0f);
-    assert_int_equal(lesson.updated_case, 0);
-    assert_int_equal(lesson.experience, GRRL_NO_EXPERIENCE);
+    struct grrl_update update = adopt(learner, 1, 2, false);
+    assert_true(update.reward == 2.0f && update.target == 2.0f);
+    assert_int_equal(update.updated_case, 0);
+    assert_int_equal(update.experience, GRRL_NO_EXPERIENCE);
     world_start("RPR");
     start(learner);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
@@ -346,7 +346,7 @@ static void calls_out_of_order_are_refused(void **state)
     (void)state;
     struct grrl_learner *learner = &one.learner;
     struct grrl_decision decision;
-    struct grrl_lesson lesson;
+    struct grrl_update update;
     assert_int_equal(grrl_learner_perceive(learner), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
     grrl_learner_observe(learner, NULL, false);
@@ -364,17 +364,17 @@ static void calls_out_of_order_are_refused(void **state)
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_NONE);
     world.n_bodies = 1;
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-    assert_int_equal(grrl_learner_learn(learner, false, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_learn(learner, false, &update), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_adopt(learner, 99, 0, &decision), GRRL_ERR_NONE);
     assert_int_equal(grrl_learner_adopt(learner, 1, 6, &decision), GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_adopt(learner, 1, 0, &decision), GRRL_ERR_ORDER);
-    assert_int_equal(grrl_learner_learn(learner, false, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_learn(learner, false, &update), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
-    assert_int_equal(grrl_learner_learn(learner, true, &lesson), GRRL_OK);
-    assert_int_equal(grrl_learner_learn(learner, true, &lesson), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_learn(learner, true, &update), GRRL_OK);
+    assert_int_equal(grrl_learner_learn(learner, true, &update), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
 }
 

@@ -25,8 +25,7 @@ static int setup(void **state)
                                            .centroid_m = {0.1f * i, -2.0f},
                                            .axis = {0.6f, 0.8f},
                                            .length_m = 0.13f,
-                                           .width_m = 0.035f,
-                                           .properties = UINT64_C(0x8000000000000001)};
+                                           .width_m = 0.035f};
     }
     for (uint8_t i = 0; i < 2; i++) {
         model.joint[i] = (struct grrl_joint){.a = i,
@@ -80,7 +79,7 @@ static void test_model_cut_or_longer(void **state)
 static void test_model_forged(void **state)
 {
     (void)state;
-    const size_t joints = 4 + 3 * 36, features = joints + 2 * 59;
+    const size_t joints = 4 + 3 * 28, features = joints + 2 * 59;
     const struct {
         size_t at;
         uint8_t value;
@@ -137,18 +136,18 @@ static void test_decision(void **state)
 static void test_lesson(void **state)
 {
     (void)state;
-    const struct grrl_lesson lesson = {2.0f, 2.5f, GRRL_NO_EXPERIENCE, 9};
+    const struct grrl_update update = {2.0f, 2.5f, GRRL_NO_EXPERIENCE, 9};
     const struct grrl_learner_usage usage = {12, 256, 3};
-    struct grrl_lesson other;
+    struct grrl_update other;
     struct grrl_learner_usage used;
-    onboard_packet_begin(&packet, ONBOARD_LESSON);
-    onboard_put_lesson(&packet, &lesson, &usage);
-    assert_true(onboard_get_lesson(&packet, &other, &used));
-    assert_memory_equal(&other, &lesson, sizeof lesson);
+    onboard_packet_begin(&packet, ONBOARD_UPDATE);
+    onboard_put_update(&packet, &update, &usage);
+    assert_true(onboard_get_update(&packet, &other, &used));
+    assert_memory_equal(&other, &update, sizeof update);
     assert_memory_equal(&used, &usage, sizeof usage);
     packet.at = 0;
     packet.n--;
-    assert_false(onboard_get_lesson(&packet, &other, &used));
+    assert_false(onboard_get_update(&packet, &other, &used));
 }
 
 int main(void)

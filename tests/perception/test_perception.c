@@ -16,7 +16,6 @@ static void one_blob_before_anything_moved(void **state)
     const struct grrl_model *model = grrl_perception_model(&perception);
     assert_int_equal(model->n_bodies, 1);
     assert_int_equal(model->n_joints, 0);
-    assert_int_equal(model->body[0].properties, GRRL_PROPERTY_LARGE);
     int on_table_in_body = 0;
     int left_out = 0;
     for (int i = 0; i < model->n_features; i++) {
@@ -292,7 +291,8 @@ static void order_and_ids_of_points_do_not_matter(void **state)
             grrl_perception_observe(&perception, &frame, pushing);
         }
         assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-        grrl_model_graph(grrl_perception_model(&perception), &graphs[variant], NULL, NULL);
+        grrl_relational_state_of(grrl_perception_model(&perception), 0.15f, &graphs[variant], NULL,
+                                 NULL);
     }
     struct grrl_canonical a;
     struct grrl_canonical b;

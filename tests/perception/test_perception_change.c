@@ -270,8 +270,8 @@ static bool same_structure(void)
 {
     struct grrl_graph graph[2];
     struct grrl_canonical canonical[2];
-    grrl_model_graph(grrl_perception_model(&perception), &graph[0], NULL, NULL);
-    grrl_model_graph(grrl_perception_model(&other), &graph[1], NULL, NULL);
+    grrl_relational_state_of(grrl_perception_model(&perception), 0.15f, &graph[0], NULL, NULL);
+    grrl_relational_state_of(grrl_perception_model(&other), 0.15f, &graph[1], NULL, NULL);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(grrl_canonical_of(&graph[i], GRRL_ALL_PROPERTIES, 20000, &canonical[i]),
                          GRRL_OK);

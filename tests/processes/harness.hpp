@@ -139,7 +139,7 @@ public:
             restart();
         }
         AgentHost *last = agent_ != nullptr ? agent_.get() : rival_.get();
-        grrl_experience_io io = {&outcome_.experiences, append, nullptr};
+        grrl_io io = {&outcome_.experiences, append, nullptr};
         assert_int_equal(grrl_learner_save(&last->agent.learner, &io), GRRL_OK);
         outcome_.agent_repeated = last->agent.counts.repeated;
         outcome_.agent_foreign = last->agent.counts.foreign;

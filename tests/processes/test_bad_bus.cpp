@@ -1,6 +1,6 @@
 /* Lost, repeated, late messages, rivals, frozen and restarted peers: the run goes on with the same
  * result, or stops with a word; and never is a reward learned for another action (harness.hpp
- * asserts that at each lesson). */
+ * asserts that at each update). */
 #include "harness.hpp"
 
 using namespace harness;

@@ -50,7 +50,7 @@ public:
     std::vector<uint8_t> experiences()
     {
         std::vector<uint8_t> bytes;
-        grrl_experience_io io = {&bytes, append, nullptr};
+        grrl_io io = {&bytes, append, nullptr};
         assert_int_equal(grrl_learner_save(&agent_->learner, &io), GRRL_OK);
         return bytes;
     }

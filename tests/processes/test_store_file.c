@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "disk.h"
-#include "grrl/learner/learner.h"
 #include "grrl/base/random.h"
+#include "grrl/learner/learner.h"
 #include "store_check.h"
 
 #define PATH "folder/kept.store"
@@ -44,7 +44,7 @@ static int append(void *context, const void *bytes, size_t size)
 
 static void content_of(const struct grrl_learner *learner, struct disk_content *content)
 {
-    struct grrl_experience_io io = {.context = content, .write = append};
+    struct grrl_io io = {.context = content, .write = append};
     content->size = 0;
     assert_int_equal(grrl_learner_save(learner, &io), GRRL_OK);
 }

@@ -20,8 +20,8 @@
 /* learning */
 #include "grrl/learner/cases/case_base.h"
 #include "grrl/learner/cases/context.h"
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/learner/learner.h"
 #include "grrl/learner/policy.h"
+#include "grrl/learner/relational_q/experience.h"
 
 #endif

@@ -1,5 +1,6 @@
 #include "base/record.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 /* CRC-32 (IEEE 802.3), bit by bit: a file is small and a table would be a kilobyte. */

@@ -9,14 +9,14 @@
 #include <stdint.h>
 
 #include "grrl/base/config.h"
-#include "grrl/learner/relational_q/experience.h"
+#include "grrl/base/io.h"
 #include "grrl/base/status.h"
 
 enum { GRRL_RECORD_BYTES = 32 + 16 * GRRL_MAX_LINKS, GRRL_RECORD_CRC_BYTES = 4 };
 
 /* One record on its way out of or into a file, and the CRC so far. */
 struct grrl_record {
-    const struct grrl_experience_io *io;
+    const struct grrl_io *io;
     uint32_t crc;
     size_t n; /* bytes put, or taken */
     uint8_t bytes[GRRL_RECORD_BYTES + GRRL_RECORD_CRC_BYTES];

@@ -26,6 +26,7 @@ void grrl_learner_config_default(struct grrl_learner_config *config)
     grrl_perception_config_default(&config->perception);
     grrl_grounding_config_default(&config->grounding);
     grrl_policy_config_default(&config->policy);
+    config->large_m = 0.15f;
     config->seed = 1;
 }
 
@@ -45,7 +46,8 @@ enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    const struct grrl_learner_config *config,
                                    const struct grrl_learner_memory *memory)
 {
-    if (!is_enough(memory, config->policy.kind) ||
+    bool is_size = grrl_is_finite(config->large_m) && config->large_m > 0.0f;
+    if (!is_size || !is_enough(memory, config->policy.kind) ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
         grrl_policy_config_check(&config->policy, NULL) != GRRL_OK ||
         grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK)
@@ -115,8 +117,8 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
     if (status != GRRL_OK)
         return status;
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
-    grrl_model_graph(model, &learner->state, NULL, NULL);
-    grrl_attempts_look(&learner->attempts, model, learner->config.perception.large_m);
+    grrl_relational_state_of(model, learner->config.large_m, &learner->state, NULL, NULL);
+    grrl_attempts_look(&learner->attempts, model, learner->config.large_m);
     if (learner->phase == PHASE_BEGUN || learner->phase == PHASE_READY) {
         (void)reveal(learner); /* what shows without a push is not paid */
         learner->phase = PHASE_READY;
@@ -137,9 +139,8 @@ static void describe_actions(struct grrl_learner *learner)
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     learner->contexts.n_links = model->n_bodies;
     for (uint8_t i = 0; i < model->n_bodies; i++) {
-        enum grrl_status status =
-            grrl_context_of(&learner->attempts, model, learner->config.perception.large_m, i,
-                            learner->contexts.action[i]);
+        enum grrl_status status = grrl_context_of(
+            &learner->attempts, model, learner->config.large_m, i, learner->contexts.action[i]);
         assert(status == GRRL_OK); /* there is such a body */
         (void)status;
     }
@@ -219,38 +220,38 @@ static float limit(float x)
 }
 
 /* The paper's update: Q-learning with the instance-based Q function; sections V-C and V-D. */
-static void learn_q(struct grrl_learner *learner, bool ended, struct grrl_lesson *lesson)
+static void learn_q(struct grrl_learner *learner, bool ended, struct grrl_update *update)
 {
     const struct grrl_policy_config *policy = &learner->config.policy;
     if (!ended) {
         recall_state(learner);
-        lesson->target += policy->gamma * grrl_policy_best_value(&learner->store, &learner->recall);
+        update->target += policy->gamma * grrl_policy_best_value(&learner->store, &learner->recall);
     }
-    lesson->target = limit(lesson->target); /* a discount next to 1 adds up without end */
+    update->target = limit(update->target); /* a discount next to 1 adds up without end */
     const struct grrl_choice *choice = &learner->last_choice;
     uint32_t index;
     if (policy->kind == GRRL_POLICY_PAPER &&
         grrl_experience_update(&learner->store, &learner->acted_on, choice->link, choice->direction,
-                               lesson->target, policy->alpha, &index) == GRRL_OK)
-        lesson->experience = index;
+                               update->target, policy->alpha, &index) == GRRL_OK)
+        update->experience = index;
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
-                                    struct grrl_lesson *lesson)
+                                    struct grrl_update *update)
 {
     if (learner->phase != PHASE_DONE)
         return GRRL_ERR_ORDER;
     const struct grrl_policy_config *policy = &learner->config.policy;
-    *lesson = (struct grrl_lesson){.experience = GRRL_NO_EXPERIENCE, .updated_case = GRRL_NO_CASE};
-    lesson->reward = (float)reveal(learner) + (ended ? policy->trial_reward : 0.0f);
-    lesson->target = lesson->reward;
+    *update = (struct grrl_update){.experience = GRRL_NO_EXPERIENCE, .updated_case = GRRL_NO_CASE};
+    update->reward = (float)reveal(learner) + (ended ? policy->trial_reward : 0.0f);
+    update->target = update->reward;
     if (policy->kind == GRRL_POLICY_LEARN) {
         const struct grrl_choice *choice = &learner->last_choice;
-        lesson->updated_case = grrl_cases_learn(
+        update->updated_case = grrl_cases_learn(
             &learner->cases, &policy->cases,
-            &learner->contexts.action[choice->link][choice->direction], lesson->reward);
+            &learner->contexts.action[choice->link][choice->direction], update->reward);
     } else {
-        learn_q(learner, ended, lesson);
+        learn_q(learner, ended, update);
     }
     learner->phase = ended ? PHASE_IDLE : PHASE_READY;
     return GRRL_OK;
@@ -267,8 +268,7 @@ struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learn
                                        learner->store.evictions};
 }
 
-enum grrl_status grrl_learner_save(const struct grrl_learner *learner,
-                                   const struct grrl_experience_io *io)
+enum grrl_status grrl_learner_save(const struct grrl_learner *learner, const struct grrl_io *io)
 {
     enum grrl_status status = grrl_experience_save(&learner->store, io);
     return status == GRRL_OK ? grrl_cases_save(&learner->cases, io) : status;
@@ -280,8 +280,8 @@ static void forget(struct grrl_learner *learner)
     grrl_cases_clear(&learner->cases);
 }
 
-enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
-                                        const struct grrl_experience_io *io, uint32_t *lost)
+enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner, const struct grrl_io *io,
+                                        uint32_t *lost)
 {
     uint32_t lost_cases = 0;
     grrl_cases_clear(&learner->cases);
@@ -294,8 +294,7 @@ enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
     return status;
 }
 
-enum grrl_status grrl_learner_load(struct grrl_learner *learner,
-                                   const struct grrl_experience_io *io)
+enum grrl_status grrl_learner_load(struct grrl_learner *learner, const struct grrl_io *io)
 {
     uint32_t lost;
     enum grrl_status status = grrl_learner_load_torn(learner, io, &lost);
@@ -311,6 +310,6 @@ enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
     struct grrl_graph graph;
     struct grrl_name names[GRRL_MAX_LINKS];
     struct grrl_edge edges[GRRL_MAX_JOINTS];
-    grrl_model_graph(model, &graph, names, edges);
+    grrl_relational_state_of(model, learner->config.large_m, &graph, names, edges);
     return grrl_graph_to_term(store, &graph, names, edges, model->n_joints, true, term);
 }

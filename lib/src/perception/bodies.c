@@ -21,7 +21,7 @@
 #define MERGE_FREE 12.0f     /* chi squared a keyframe's separate pose must save: 3 parameters */
 #define MERGE_EVIDENCE 40.0f /* and how much more in all keyframes together */
 
-void grrl_body_add(struct grrl_perception *p)
+void grrl_bodies_add(struct grrl_perception *p)
 {
     p->number[p->n_bodies++] = ++p->n_numbers;
 }
@@ -29,7 +29,7 @@ void grrl_body_add(struct grrl_perception *p)
 static void fit_body(struct grrl_perception *p, uint8_t body)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
-    uint16_t n = grrl_body_slots(p, body, slots);
+    uint16_t n = grrl_rigid_slots(p, body, slots);
     grrl_rigid_fit(p, slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS);
 }
 
@@ -50,20 +50,20 @@ static float cost_limit(const struct grrl_perception *p, uint16_t n)
 static bool moves(const struct grrl_perception *p, uint16_t slot)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
-    float mass = 0.0f;
+    float weight = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         mean = grrl_vec2_add(mean, grrl_vec2_scale(p->keyframe[k].point[slot], w));
-        mass += w;
+        weight += w;
     }
     uint16_t n = 0;
     float cost = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         if (w > 0) {
-            float d2 =
-                grrl_distance2(p->keyframe[k].point[slot], grrl_vec2_scale(mean, 1.0f / mass)) /
-                grrl_keyframe_variance(p, w);
+            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot],
+                                           grrl_vec2_scale(mean, 1.0f / weight)) /
+                       grrl_perception_variance(p, w);
             cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
             n++;
         }
@@ -110,7 +110,7 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
         float saved = 0.0f;
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f) || !(poses[k].mass > 0.0f))
+        if (!(pa->weight > 0.0f) || !(pb->weight > 0.0f) || !(poses[k].weight > 0.0f))
             continue;
         for (uint16_t i = 0; i < n; i++) {
             uint16_t slot = slots[i];
@@ -118,11 +118,12 @@ static float apart_evidence(const struct grrl_perception *p, const uint16_t *slo
             if (w == 0)
                 continue;
             const struct grrl_perception_pose *own = body_of[slot] == a ? pa : pb;
-            float scale = 1.0f / grrl_keyframe_variance(p, w);
-            float together = scale * grrl_distance2(p->keyframe[k].point[slot],
-                                                    grrl_transform(poses[k].pose, shape[slot]));
-            float alone = scale * grrl_distance2(p->keyframe[k].point[slot],
-                                                 grrl_transform(own->pose, p->shape[slot]));
+            float scale = 1.0f / grrl_perception_variance(p, w);
+            float together =
+                scale * grrl_vec2_distance2(p->keyframe[k].point[slot],
+                                            grrl_transform(poses[k].pose, shape[slot]));
+            float alone = scale * grrl_vec2_distance2(p->keyframe[k].point[slot],
+                                                      grrl_transform(own->pose, p->shape[slot]));
             saved += (together < 100.0f ? together : 100.0f) - (alone < 100.0f ? alone : 100.0f);
         }
         evidence += saved > allowance ? saved - allowance : 0.0f;
@@ -185,7 +186,7 @@ static struct range range_between(const struct grrl_perception *p, uint8_t a, ui
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!p->keyframe[k].at_rest || !(pa->mass > 0.0f) || !(pb->mass > 0.0f))
+        if (!p->keyframe[k].at_rest || !(pa->weight > 0.0f) || !(pb->weight > 0.0f))
             continue;
         struct grrl_pose r = {grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p)),
                               pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s,
@@ -197,7 +198,7 @@ static struct range range_between(const struct grrl_perception *p, uint8_t a, ui
         }
         float tv = noise2 * (1.0f / (pa->inertia + 1e-9f) + 1.0f / (pb->inertia + 1e-9f));
         float sv =
-            noise2 * (1.0f / pa->mass + 1.0f / pb->mass) + 0.25f * tv * grrl_vec2_dot(r.p, r.p);
+            noise2 * (1.0f / pa->weight + 1.0f / pb->weight) + 0.25f * tv * grrl_vec2_dot(r.p, r.p);
         range.turn_var = tv > range.turn_var ? tv : range.turn_var;
         range.shift_var = sv > range.shift_var ? sv : range.shift_var;
         /* where b takes the point half way between them */
@@ -277,9 +278,9 @@ static bool stays_close(const struct grrl_perception *p, uint16_t slot)
     float sum = 0.0f;
     float n = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].mass > 0.0f) {
+        if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].weight > 0.0f) {
             struct grrl_vec2 at = grrl_transform(p->pose[k][body].pose, p->shape[slot]);
-            sum += grrl_distance2(p->keyframe[k].point[slot], at);
+            sum += grrl_vec2_distance2(p->keyframe[k].point[slot], at);
             n += 1.0f;
         }
     }
@@ -333,7 +334,7 @@ static void dissolve_small(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
-        uint16_t n = grrl_body_slots(p, b, slots);
+        uint16_t n = grrl_rigid_slots(p, b, slots);
         if (n < p->config.min_features) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
@@ -347,7 +348,7 @@ static void dissolve_small(struct grrl_perception *p)
 static void give_back_the_table(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
-        if (body_has_moved(p, b) || grrl_hangs_together(p, b))
+        if (body_has_moved(p, b) || grrl_initial_is_compact(p, b))
             continue;
         for (uint16_t i = 0; i < p->n_slots; i++) {
             if (p->body_of[i] == b) {
@@ -389,7 +390,7 @@ static void dissolve_redundant(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
-        uint16_t n = grrl_body_slots(p, b, slots);
+        uint16_t n = grrl_rigid_slots(p, b, slots);
         uint16_t unique = 0;
         for (uint16_t i = 0; i < n && unique < p->config.min_features; i++)
             unique = (uint16_t)(unique + (fits_elsewhere(p, slots[i], n) ? 0 : 1));
@@ -408,15 +409,15 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
     struct range range = range_between(p, a, b);
     if (!is_less(p, &range, LITTLE) || !may_share(p, blob_of_body(p, a), body_has_moved(p, a), b))
         return;
-    struct grrl_together together;
+    struct grrl_rigid_group together;
     uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part;
     together.n = slots_of_both(p, a, b, together.slot);
     grrl_rigid_fit(p, together.slot, together.n, together.shape, together.pose, 1);
-    float gain = grrl_best_cut(p, &together, a, part, &n_part);
+    float gain = grrl_cut_best(p, &together, a, part, &n_part);
     uint16_t crossed[GRRL_MAX_FEATURES];
     uint16_t n_crossed;
-    float crossed_gain = grrl_best_cross(p, &together, a, crossed, &n_crossed);
+    float crossed_gain = grrl_cut_best_cross(p, &together, a, crossed, &n_crossed);
     if (crossed_gain > gain) {
         gain = crossed_gain;
         n_part = n_crossed;
@@ -448,10 +449,11 @@ static void split_body(struct grrl_perception *p, uint8_t body)
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
-    uint16_t n = grrl_body_slots(p, body, slots);
-    if (n < p->config.min_features || grrl_misfit(p, slots, n, body, score) < SPLIT_SIGMAS)
+    uint16_t n = grrl_rigid_slots(p, body, slots);
+    if (n < p->config.min_features ||
+        grrl_consensus_misfit(p, slots, n, body, score) < SPLIT_SIGMAS)
         return;
-    uint16_t n_members = grrl_consensus(p, slots, n, score, members);
+    uint16_t n_members = grrl_consensus_find(p, slots, n, score, members);
     if (n_members < p->config.min_features || n_members == n)
         return;
     for (uint16_t i = 0; i < n; i++)
@@ -468,22 +470,22 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
-    uint16_t n = grrl_body_slots(p, GRRL_FEATURE_NONE, slots);
+    uint16_t n = grrl_rigid_slots(p, GRRL_FEATURE_NONE, slots);
     if (n < p->config.min_features || p->n_bodies == GRRL_MAX_LINKS)
         return false;
     uint8_t body = p->n_bodies;
     for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = body;
     fit_body(p, body);
-    (void)grrl_misfit(p, slots, n, body, score);
-    uint16_t n_members = grrl_consensus(p, slots, n, score, members);
+    (void)grrl_consensus_misfit(p, slots, n, body, score);
+    uint16_t n_members = grrl_consensus_find(p, slots, n, score, members);
     for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = GRRL_FEATURE_NONE;
     if (n_members < p->config.min_features)
         return false;
     for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
-    grrl_body_add(p);
+    grrl_bodies_add(p);
     fit_body(p, body);
     return true;
 }
@@ -501,10 +503,10 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         for (uint8_t k = 0; k < p->n_keyframes && p->body_of[i] == body; k++) {
             uint8_t w = p->keyframe[k].weight[i];
-            if (w > 0 && p->pose[k][body].mass > 0.0f) {
-                float d2 = grrl_distance2(p->keyframe[k].point[i],
-                                          grrl_transform(p->pose[k][body].pose, p->shape[i]));
-                sum += 0.5f * (d2 < most ? d2 : most) - grrl_keyframe_variance(p, w);
+            if (w > 0 && p->pose[k][body].weight > 0.0f) {
+                float d2 = grrl_vec2_distance2(p->keyframe[k].point[i],
+                                               grrl_transform(p->pose[k][body].pose, p->shape[i]));
+                sum += 0.5f * (d2 < most ? d2 : most) - grrl_perception_variance(p, w);
                 n += 1.0f;
             }
         }
@@ -515,11 +517,11 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
 void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0)
-        grrl_first_look(p);
+        grrl_initial_segmentation(p);
     for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = moves(p, i);
     fit_all(p);
-    if (grrl_drop_outliers(p))
+    if (grrl_outliers_drop(p))
         fit_all(p);
     for (uint8_t b = 0; b < p->n_bodies; b++)
         split_body(p, b);
@@ -537,7 +539,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     dissolve_redundant(p);
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
-        uint16_t n = grrl_body_slots(p, b, slots);
+        uint16_t n = grrl_rigid_slots(p, b, slots);
         grrl_rigid_refit(p, slots, n, p->shape, &p->pose[0][b], GRRL_MAX_LINKS);
         p->bend_m2[b] = bend_of(p, b);
     }

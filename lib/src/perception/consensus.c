@@ -17,8 +17,8 @@
 #define INLIER_COST 3.5f   /* mean squared residual of a member; 2 is expected */
 
 /* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
-float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t body,
-                  float *score)
+float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                            uint8_t body, float *score)
 {
     float worst = 0.0f;
     float total = 0.0f;
@@ -29,10 +29,10 @@ float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16
         float count = 0.0f;
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w = p->keyframe[k].weight[slots[i]];
-            if (w > 0 && pose->mass > 0.0f) {
-                float d2 = grrl_distance2(p->keyframe[k].point[slots[i]],
-                                          grrl_transform(pose->pose, p->shape[slots[i]])) /
-                           grrl_keyframe_variance(p, w);
+            if (w > 0 && pose->weight > 0.0f) {
+                float d2 = grrl_vec2_distance2(p->keyframe[k].point[slots[i]],
+                                               grrl_transform(pose->pose, p->shape[slots[i]])) /
+                           grrl_perception_variance(p, w);
                 sum += d2 < MISFIT_CAP ? d2 : MISFIT_CAP;
                 count += 1.0f;
             }
@@ -83,7 +83,7 @@ struct displacement {
     struct grrl_vec2 to;
     float c;
     float s;
-    float mass;
+    float weight;
     float inertia;
 };
 
@@ -103,9 +103,9 @@ static bool displacement_of(const struct grrl_perception *p, const uint16_t *slo
     }
     if (seen < 2)
         return false;
-    d->mass = (float)seen;
-    d->from = grrl_vec2_scale(d->from, 1.0f / d->mass);
-    d->to = grrl_vec2_scale(d->to, 1.0f / d->mass);
+    d->weight = (float)seen;
+    d->from = grrl_vec2_scale(d->from, 1.0f / d->weight);
+    d->to = grrl_vec2_scale(d->to, 1.0f / d->weight);
     float along = 0.0f;
     float across = 0.0f;
     for (uint16_t i = 0; i < n; i++) {
@@ -148,8 +148,8 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
             struct grrl_vec2 x = grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from);
             struct grrl_vec2 y = grrl_vec2_sub(p->keyframe[k].point[slots[i]], d.to);
             struct grrl_vec2 r = {y.x - (d.c * x.x - d.s * x.y), y.y - (d.s * x.x + d.c * x.y)};
-            float variance = (grrl_keyframe_variance(p, w0) + grrl_keyframe_variance(p, w1)) *
-                             (1.0f + 1.0f / d.mass + grrl_vec2_dot(x, x) / (2.0f * d.inertia));
+            float variance = (grrl_perception_variance(p, w0) + grrl_perception_variance(p, w1)) *
+                             (1.0f + 1.0f / d.weight + grrl_vec2_dot(x, x) / (2.0f * d.inertia));
             float d2 = grrl_vec2_dot(r, r) / variance;
             cost[i] += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
             count[i] += 1.0f;
@@ -172,7 +172,7 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
     for (uint16_t i = 0; i < n; i++) {
         if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0)
             continue;
-        float d = grrl_distance2(p->keyframe[k0].point[seed], p->keyframe[k0].point[slots[i]]);
+        float d = grrl_vec2_distance2(p->keyframe[k0].point[seed], p->keyframe[k0].point[slots[i]]);
         uint16_t at = n_group;
         while (at > 1 && d2[at - 2] > d) {
             if (at <= SEED_NEIGHBOURS) {
@@ -191,8 +191,8 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
 }
 
 /* The largest set of features in `slots` that moved as one; returns its size, members[]. */
-uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
-                        const float *score, uint16_t *members)
+uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                             const float *score, uint16_t *members)
 {
     struct choice_of_keyframes chosen = telling_keyframes(p, score);
     uint8_t k0 = 0;

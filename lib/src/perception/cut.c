@@ -54,12 +54,12 @@ static float saved_by_both(const struct part_sum *part, const struct part_sum *a
 }
 
 /* One feature in one keyframe; one that is off more than motion explains counts for nothing. */
-static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl_together *t,
+static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                               uint16_t slot, uint8_t k)
 {
     struct part_sum one = {0};
     uint8_t weight = p->keyframe[k].weight[slot];
-    if (weight == 0 || !(t->pose[k].mass > 0.0f))
+    if (weight == 0 || !(t->pose[k].weight > 0.0f))
         return one;
     struct grrl_vec2 q = t->shape[slot];
     struct grrl_vec2 d =
@@ -67,7 +67,7 @@ static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl
     float reach = p->config.jump_m;
     if (grrl_vec2_dot(d, d) > reach * reach)
         return one;
-    one.w = 1.0f / grrl_keyframe_variance(p, weight);
+    one.w = 1.0f / grrl_perception_variance(p, weight);
     one.q = grrl_vec2_scale(q, one.w);
     one.d = grrl_vec2_scale(d, one.w);
     one.qq = one.w * grrl_vec2_dot(q, q);
@@ -75,8 +75,8 @@ static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl
     return one;
 }
 
-static void sort_along(const struct grrl_together *t, struct grrl_vec2 direction, uint16_t *slots,
-                       uint16_t n)
+static void sort_along(const struct grrl_rigid_group *t, struct grrl_vec2 direction,
+                       uint16_t *slots, uint16_t n)
 {
     for (uint16_t i = 1; i < n; i++) { /* insertion sort: the features of two links */
         uint16_t slot = slots[i];
@@ -91,7 +91,7 @@ static void sort_along(const struct grrl_together *t, struct grrl_vec2 direction
 }
 
 /* What the parts save as they are: the features of `body` and the others. */
-static float saved_as_is(const struct grrl_perception *p, const struct grrl_together *t,
+static float saved_as_is(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                          const uint8_t *body_of, uint8_t body, const struct part_sum *all)
 {
     float total = 0.0f;
@@ -108,7 +108,7 @@ static float saved_as_is(const struct grrl_perception *p, const struct grrl_toge
     return total;
 }
 
-static void sum_all(const struct grrl_perception *p, const struct grrl_together *t,
+static void sum_all(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                     struct part_sum *all)
 {
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -125,7 +125,7 @@ static struct grrl_vec2 rotate_30(struct grrl_vec2 v)
     return (struct grrl_vec2){v.x * 0.8660254f - v.y * 0.5f, v.x * 0.5f + v.y * 0.8660254f};
 }
 
-float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body,
+float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_group *t, uint8_t body,
                     uint16_t *part, uint16_t *n_part)
 {
     struct part_sum all[GRRL_MAX_KEYFRAMES];
@@ -167,7 +167,7 @@ float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together 
  * to one link and to the other in turn. From crosses in several directions features go to the
  * side whose turn and shift leaves less of them.
  */
-static void cross(const struct grrl_together *t, struct grrl_vec2 direction, bool *is_left)
+static void cross(const struct grrl_rigid_group *t, struct grrl_vec2 direction, bool *is_left)
 {
     struct grrl_vec2 middle = {0.0f, 0.0f};
     for (uint16_t i = 0; i < t->n; i++)
@@ -194,7 +194,7 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
 }
 
 /* Moves features to the side that leaves less of them; returns what both sides save then. */
-static float share_out(const struct grrl_perception *p, const struct grrl_together *t,
+static float share_out(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                        const struct part_sum *all, bool *is_left)
 {
     float excess[GRRL_MAX_FEATURES] = {0.0f}; /* left over on the left more than on the right */
@@ -221,7 +221,7 @@ static float share_out(const struct grrl_perception *p, const struct grrl_togeth
     return total;
 }
 
-static uint16_t take_left(const struct grrl_together *t, const bool *is_left, uint16_t *part)
+static uint16_t take_left(const struct grrl_rigid_group *t, const bool *is_left, uint16_t *part)
 {
     uint16_t n = 0;
     for (uint16_t i = 0; i < t->n; i++)
@@ -231,7 +231,8 @@ static uint16_t take_left(const struct grrl_together *t, const bool *is_left, ui
 }
 
 /* Whether the features of `body` and the others lie among one another, not side by side. */
-static bool lie_across(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body)
+static bool lie_across(const struct grrl_perception *p, const struct grrl_rigid_group *t,
+                       uint8_t body)
 {
     struct part_sum side[2] = {{0}};
     for (uint16_t i = 0; i < t->n; i++) {
@@ -251,8 +252,8 @@ static bool lie_across(const struct grrl_perception *p, const struct grrl_togeth
     return grrl_vec2_dot(apart, apart) < radius2;
 }
 
-float grrl_best_cross(const struct grrl_perception *p, const struct grrl_together *t, uint8_t body,
-                      uint16_t *part, uint16_t *n_part)
+float grrl_cut_best_cross(const struct grrl_perception *p, const struct grrl_rigid_group *t,
+                          uint8_t body, uint16_t *part, uint16_t *n_part)
 {
     struct part_sum all[GRRL_MAX_KEYFRAMES];
     uint16_t least = p->config.min_features;
@@ -281,17 +282,17 @@ float grrl_best_cross(const struct grrl_perception *p, const struct grrl_togethe
     return best - now;
 }
 
-float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body)
+float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body)
 {
-    struct grrl_together together;
+    struct grrl_rigid_group together;
     uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part;
-    together.n = grrl_body_slots(p, body, together.slot);
+    together.n = grrl_rigid_slots(p, body, together.slot);
     for (uint16_t i = 0; i < together.n; i++)
         together.shape[together.slot[i]] = p->shape[together.slot[i]];
     for (uint8_t k = 0; k < p->n_keyframes; k++)
         together.pose[k] = p->pose[k][body];
     float chance = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
-    float gain = grrl_best_cut(p, &together, body, part, &n_part) / p->config.slack;
+    float gain = grrl_cut_best(p, &together, body, part, &n_part) / p->config.slack;
     return gain > chance ? (gain - chance) / grrl_sqrt(2.0f * chance) : 0.0f;
 }

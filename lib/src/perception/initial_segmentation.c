@@ -15,7 +15,7 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
     for (uint16_t j = 0; j < p->n_slots; j++) {
         if (j == i || key->weight[j] == 0)
             continue;
-        float d = grrl_distance2(key->point[i], key->point[j]);
+        float d = grrl_vec2_distance2(key->point[i], key->point[j]);
         if (d < nearest) {
             second = nearest;
             nearest = d;
@@ -77,7 +77,7 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
     for (uint16_t next = 0; next < n; next++) {
         for (uint16_t j = 0; j < p->n_slots; j++) {
             if (p->blob_of[j] == 0 && key->weight[j] > 0 &&
-                grrl_distance2(key->point[queue[next]], key->point[j]) < reach2) {
+                grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < reach2) {
                 p->blob_of[j] = blob;
                 queue[n++] = j;
             }
@@ -86,7 +86,7 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
     return n;
 }
 
-bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
+bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body)
 {
     const struct grrl_perception_keyframe *key = &p->keyframe[0];
     bool reached[GRRL_MAX_FEATURES] = {false};
@@ -100,7 +100,7 @@ bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
         for (uint16_t next = 0; next < n; next++) {
             for (uint16_t j = 0; j < p->n_slots; j++) {
                 if (p->body_of[j] == body && !reached[j] && key->weight[j] > 0 &&
-                    grrl_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
+                    grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
                     reached[j] = true;
                     queue[n++] = j;
                 }
@@ -112,7 +112,7 @@ bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body)
     return false;
 }
 
-void grrl_first_look(struct grrl_perception *p)
+void grrl_initial_segmentation(struct grrl_perception *p)
 {
     float values[GRRL_MAX_FEATURES];
     uint16_t n = 0;
@@ -123,7 +123,7 @@ void grrl_first_look(struct grrl_perception *p)
             values[n++] = neighbour_distance2(p, i);
     }
     if (!p->config.static_background) {
-        grrl_body_add(p);
+        grrl_bodies_add(p);
         return;
     }
     if (n < 3)
@@ -144,7 +144,7 @@ void grrl_first_look(struct grrl_perception *p)
         }
         if (is_body) {
             blob++;
-            grrl_body_add(p);
+            grrl_bodies_add(p);
         }
     }
 }

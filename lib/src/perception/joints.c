@@ -54,7 +54,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!(pa->mass > 0.0f) || !(pb->mass > 0.0f))
+        if (!(pa->weight > 0.0f) || !(pb->weight > 0.0f))
             continue;
         motion->at_rest[motion->n] = p->keyframe[k].at_rest;
         struct relative *r = &motion->at[motion->n++];
@@ -77,7 +77,7 @@ static float point_variance(const struct grrl_perception *p, const struct motion
                             const struct relative *r, float lever_a2, float lever_b2)
 {
     float model = p->config.model_error_m;
-    return motion->noise2 * (1.0f / r->pa->mass + 1.0f / r->pb->mass +
+    return motion->noise2 * (1.0f / r->pa->weight + 1.0f / r->pb->weight +
                              0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
                                      lever_b2 / (r->pb->inertia + 1e-9f))) +
            2.0f * model * model + motion->bend_a + motion->bend_b;
@@ -90,8 +90,8 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
     float model2 = p->config.model_error_m * p->config.model_error_m;
     return (motion->noise2 + 4.0f * model2) *
                (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f)) +
-           motion->bend_a * r->pa->mass / (r->pa->inertia + 1e-9f) +
-           motion->bend_b * r->pb->mass / (r->pb->inertia + 1e-9f);
+           motion->bend_a * r->pa->weight / (r->pa->inertia + 1e-9f) +
+           motion->bend_b * r->pb->weight / (r->pb->inertia + 1e-9f);
 }
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)
@@ -326,7 +326,7 @@ static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evi
     }
     gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        bool both = p->pose[k][e->a].mass > 0.0f && p->pose[k][e->b].mass > 0.0f;
+        bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
         if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
             return false;
     }
@@ -432,8 +432,8 @@ static float distance_cost(const struct grrl_perception *p, const struct grrl_jo
 }
 
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
-bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
-                      struct grrl_joint_evidence *e)
+bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                       struct grrl_joint_evidence *e)
 {
     struct motion motion;
     struct grrl_joint_fit revolute;

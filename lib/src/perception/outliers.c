@@ -15,11 +15,11 @@ static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
 {
     const struct grrl_perception_pose *pose = &p->pose[k][p->body_of[slot]];
     uint8_t weight = p->keyframe[k].weight[slot];
-    if (weight == 0 || !(pose->mass > 0.0f))
+    if (weight == 0 || !(pose->weight > 0.0f))
         return false;
     float d2 =
-        grrl_distance2(p->keyframe[k].point[slot], grrl_transform(pose->pose, p->shape[slot]));
-    return d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_keyframe_variance(p, weight);
+        grrl_vec2_distance2(p->keyframe[k].point[slot], grrl_transform(pose->pose, p->shape[slot]));
+    return d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 
 /* Whether a feature is off in few of the keyframes that are new: one in four. */
@@ -36,7 +36,7 @@ static bool is_seldom_off(const struct grrl_perception *p, uint16_t slot)
     return 4 * off <= seen + 3;
 }
 
-bool grrl_drop_outliers(struct grrl_perception *p)
+bool grrl_outliers_drop(struct grrl_perception *p)
 {
     bool dropped = false;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {

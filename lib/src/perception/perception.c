@@ -22,7 +22,6 @@ void grrl_perception_config_default(struct grrl_perception_config *config)
         .min_slide_m = 0.00175f,
         .pivot_scale_m = 0.1f,
         .gap_m = 0.1f,
-        .large_m = 0.15f,
         .slack = 1.0f,
         .min_features = 4,
         .static_background = true,
@@ -40,7 +39,6 @@ void grrl_perception_config_camera(struct grrl_perception_config *config, float 
     config->min_slide_m = 5.0f * pixel_m;
     config->pivot_scale_m = 100.0f * pixel_m;
     config->gap_m = 200.0f * pixel_m;
-    config->large_m = 150.0f * pixel_m;
     config->slack = 5.0f;
     config->static_background = false;
 }
@@ -57,8 +55,7 @@ enum grrl_status grrl_perception_init(struct grrl_perception *perception,
         !positive(config->keyframe_m) || !positive(config->jump_m) || !positive(config->table_m) ||
         !positive(config->min_turn_rad) || !positive(config->min_slide_m) ||
         !positive(config->pivot_scale_m) || !positive(config->gap_m) ||
-        !positive(config->large_m) || !(grrl_is_finite(config->slack) && config->slack >= 1.0f) ||
-        config->min_features < 3)
+        !(grrl_is_finite(config->slack) && config->slack >= 1.0f) || config->min_features < 3)
         return GRRL_ERR_ARGUMENT;
     memset(perception, 0, sizeof *perception);
     perception->config = *config;
@@ -157,8 +154,8 @@ static bool accept_point(struct grrl_perception *p, uint16_t slot, bool is_new,
     if (!is_new) {
         float gap = (float)(p->counts.frames - p->last_frame[slot]);
         float reach = p->config.jump_m * (gap < 2.0f ? gap : 2.0f);
-        if (grrl_distance2(point, p->last[slot]) > reach * reach &&
-            grrl_distance2(point, p->before[slot]) > reach * reach) {
+        if (grrl_vec2_distance2(point, p->last[slot]) > reach * reach &&
+            grrl_vec2_distance2(point, p->before[slot]) > reach * reach) {
             p->counts.outliers++;
             if (++p->jumps[slot] < JUMPS_UNTIL_NEW)
                 return false;
@@ -206,7 +203,7 @@ static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_ve
     float reach = p->moving ? p->config.jump_m : REST_SIGMAS * p->config.noise_m;
     for (int h = 0; h < 2; h++) {
         struct grrl_perception_sum *sum = &p->window.heap[h][slot];
-        bool near = sum->n > 0 && grrl_distance2(point, mean_of(sum)) < reach * reach;
+        bool near = sum->n > 0 && grrl_vec2_distance2(point, mean_of(sum)) < reach * reach;
         if (near) {
             sum->x += point.x;
             sum->y += point.y;
@@ -438,23 +435,4 @@ enum grrl_status grrl_perception_update(struct grrl_perception *perception)
 const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception)
 {
     return &perception->model;
-}
-
-void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
-                      struct grrl_name *names, struct grrl_edge *edges)
-{
-    memset(graph, 0, sizeof *graph);
-    graph->n = model->n_bodies;
-    for (uint8_t i = 0; i < model->n_bodies; i++) {
-        graph->label[i] = model->body[i].properties;
-        if (names != NULL)
-            names[i] = (struct grrl_name){GRRL_NAME_FEATURES, model->body[i].number};
-    }
-    for (uint8_t i = 0; i < model->n_joints; i++) {
-        const struct grrl_joint *joint = &model->joint[i];
-        graph->joined[joint->type][joint->a] |= UINT32_C(1) << joint->b;
-        graph->joined[joint->type][joint->b] |= UINT32_C(1) << joint->a;
-        if (edges != NULL)
-            edges[i] = (struct grrl_edge){joint->a, joint->b, joint->type};
-    }
 }

@@ -19,14 +19,14 @@
 /* Of one squared residual in units of its variance: an outlier weighs no more. */
 #define GRRL_COST_CAP 16.0f
 
-static inline float grrl_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
+static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 {
     struct grrl_vec2 d = grrl_vec2_sub(a, b);
     return grrl_vec2_dot(d, d);
 }
 
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
-float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight);
+float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight);
 
 /*
  * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
@@ -60,32 +60,32 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
                       uint16_t *n);
 
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
-uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
+uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
 
 /* first_look.c: the candidate bodies in the first keyframe. */
-void grrl_first_look(struct grrl_perception *p);
+void grrl_initial_segmentation(struct grrl_perception *p);
 
 /* Whether enough features of a body lay densely there, without those of others between them. */
-bool grrl_hangs_together(const struct grrl_perception *p, uint8_t body);
+bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body);
 
 /* outliers.c: takes lone points off their bodies out of the keyframes of pushes not yet examined;
  * whether there were any. */
-bool grrl_drop_outliers(struct grrl_perception *p);
+bool grrl_outliers_drop(struct grrl_perception *p);
 
 /*
  * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
  * together, in standard deviations of chi squared; score[k] is that of keyframe k.
  */
-float grrl_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t body,
-                  float *score);
+float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                            uint8_t body, float *score);
 
 /* The largest set among `slots` that moved as one in the keyframes of highest score; returns its
  * size, members[] holds it. */
-uint16_t grrl_consensus(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
-                        const float *score, uint16_t *members);
+uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                             const float *score, uint16_t *members);
 
 /* Features fitted as one rigid body. */
-struct grrl_together {
+struct grrl_rigid_group {
     uint16_t n;
     uint16_t slot[GRRL_MAX_FEATURES];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES];
@@ -96,19 +96,19 @@ struct grrl_together {
  * cut.c: the straight cut that parts the features best, if it is better than what they are now:
  * those of `body` and the others. Returns by how much in chi squared; part[] holds one side.
  */
-float grrl_best_cut(const struct grrl_perception *p, const struct grrl_together *together,
+float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_group *together,
                     uint8_t body, uint16_t *part, uint16_t *n_part);
 
 /* The same for two links that cross: no straight cut parts them. */
-float grrl_best_cross(const struct grrl_perception *p, const struct grrl_together *together,
-                      uint8_t body, uint16_t *part, uint16_t *n_part);
+float grrl_cut_best_cross(const struct grrl_perception *p, const struct grrl_rigid_group *together,
+                          uint8_t body, uint16_t *part, uint16_t *n_part);
 
 /* By how many standard deviations of chi squared a body's features part along some line more than
  * noise explains; 0: they do not. */
-float grrl_hidden_joint(const struct grrl_perception *p, uint8_t body);
+float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
-void grrl_body_add(struct grrl_perception *p);
+void grrl_bodies_add(struct grrl_perception *p);
 
 /* Brings body_of, shape and pose up to date. */
 void grrl_bodies_update(struct grrl_perception *p);
@@ -139,8 +139,8 @@ struct grrl_joint_evidence {
 };
 
 /* joints.c: weighs the evidence for a joint between a and b; false: none is supported. */
-bool grrl_joint_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
-                      struct grrl_joint_evidence *evidence);
+bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                       struct grrl_joint_evidence *evidence);
 
 /* structure.c: fills the model from the bodies and what ties them together. */
 void grrl_structure_update(struct grrl_perception *p);

@@ -2,7 +2,7 @@
 
 #define OFF_SIGMAS 5.0f /* of a point in a keyframe */
 
-float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight)
+float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
 {
     float noise = p->config.noise_m;
     float model = p->config.model_error_m;
@@ -13,7 +13,7 @@ float grrl_keyframe_variance(const struct grrl_perception *p, uint8_t weight)
 static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
                      const struct grrl_vec2 *shape, struct grrl_perception_pose *out)
 {
-    float mass = 0.0f;
+    float weight = 0.0f;
     struct grrl_vec2 world = {0.0f, 0.0f};
     struct grrl_vec2 local = {0.0f, 0.0f};
     unsigned seen = 0;
@@ -21,16 +21,16 @@ static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t 
         float w = (float)key->weight[slots[i]];
         if (w > 0.0f) {
             seen++;
-            mass += w;
+            weight += w;
             world = grrl_vec2_add(world, grrl_vec2_scale(key->point[slots[i]], w));
             local = grrl_vec2_add(local, grrl_vec2_scale(shape[slots[i]], w));
         }
     }
-    out->mass = 0.0f;
+    out->weight = 0.0f;
     if (seen < 2)
         return;
-    world = grrl_vec2_scale(world, 1.0f / mass);
-    local = grrl_vec2_scale(local, 1.0f / mass);
+    world = grrl_vec2_scale(world, 1.0f / weight);
+    local = grrl_vec2_scale(local, 1.0f / weight);
     float along = 0.0f;
     float across = 0.0f;
     float inertia = 0.0f;
@@ -50,7 +50,7 @@ static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t 
     out->pose.c = along / length;
     out->pose.s = across / length;
     out->pose.p = grrl_vec2_sub(world, grrl_rotate(out->pose, local));
-    out->mass = mass;
+    out->weight = weight;
     out->inertia = inertia;
 }
 
@@ -89,19 +89,19 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       struct grrl_vec2 *local)
 {
     struct grrl_vec2 sum = {0.0f, 0.0f};
-    float mass = 0.0f;
+    float weight = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
-        if (w > 0.0f && pose->mass > 0.0f) {
+        if (w > 0.0f && pose->weight > 0.0f) {
             struct grrl_vec2 q = grrl_untransform(pose->pose, p->keyframe[k].point[slot]);
             sum = grrl_vec2_add(sum, grrl_vec2_scale(q, w));
-            mass += w;
+            weight += w;
         }
     }
-    if (!(mass > 0.0f))
+    if (!(weight > 0.0f))
         return false;
-    *local = grrl_vec2_scale(sum, 1.0f / mass);
+    *local = grrl_vec2_scale(sum, 1.0f / weight);
     return true;
 }
 
@@ -147,7 +147,7 @@ void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint
 static bool is_off(const struct grrl_perception *p, uint8_t weight, float d2)
 {
     float least = p->config.min_slide_m * p->config.min_slide_m;
-    return d2 > least && d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_keyframe_variance(p, weight);
+    return d2 > least && d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 
 /* The place in slots of the point farthest off its body in keyframe k, n: none is off. */
@@ -158,8 +158,8 @@ static uint16_t farthest_off(const struct grrl_perception *p, uint8_t k, const u
     uint16_t worst = n;
     float worst2 = 0.0f;
     for (uint16_t i = 0; i < n; i++) {
-        float d2 = grrl_distance2(p->keyframe[k].point[slots[i]],
-                                  grrl_transform(pose->pose, shape[slots[i]]));
+        float d2 = grrl_vec2_distance2(p->keyframe[k].point[slots[i]],
+                                       grrl_transform(pose->pose, shape[slots[i]]));
         if (d2 > worst2 && is_off(p, p->keyframe[k].weight[slots[i]], d2)) {
             worst = i;
             worst2 = d2;
@@ -181,7 +181,7 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
         struct grrl_perception_pose pose = poses[k * stride];
         uint16_t least = (uint16_t)(n_kept - n_kept / 3);
         uint16_t worst = 0;
-        while (pose.mass > 0.0f && n_kept >= least &&
+        while (pose.weight > 0.0f && n_kept >= least &&
                (worst = farthest_off(p, k, kept, n_kept, shape, &pose)) < n_kept) {
             kept[worst] = kept[--n_kept];
             fit_pose(&p->keyframe[k], kept, n_kept, shape, &pose);
@@ -201,12 +201,12 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
-        if (w == 0 || !(pose->mass > 0.0f))
+        if (w == 0 || !(pose->weight > 0.0f))
             continue;
         struct grrl_vec2 r =
             grrl_vec2_sub(p->keyframe[k].point[slot], grrl_transform(pose->pose, local));
         float lever2 = grrl_vec2_dot(local, local);
-        float variance = grrl_keyframe_variance(p, w) + noise2 / pose->mass +
+        float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
                          0.5f * noise2 * lever2 / (pose->inertia + 1e-9f);
         float d2 = grrl_vec2_dot(r, r) / variance;
         cost += d2 < cap ? d2 : cap;
@@ -216,7 +216,7 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
     return cost;
 }
 
-uint16_t grrl_body_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots)
+uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots)
 {
     uint16_t n = 0;
     for (uint16_t i = 0; i < p->n_slots; i++)

@@ -96,7 +96,7 @@ static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
 {
     bool is_short = e->fit.upper - e->fit.lower < SHORT_SLIDE * p->config.min_slide_m;
     return e->type == GRRL_PRISMATIC && is_short &&
-           grrl_hidden_joint(p, e->a) + grrl_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
+           grrl_cut_hidden_joint(p, e->a) + grrl_cut_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
 }
 
 /* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
@@ -201,8 +201,6 @@ static void describe_body(const struct grrl_perception *p, uint8_t body, struct 
     }
     out->length_m = along[1] - along[0];
     out->width_m = across[1] - across[0];
-    out->properties = out->length_m >= p->config.large_m ? (grrl_label)GRRL_PROPERTY_LARGE
-                                                         : (grrl_label)GRRL_PROPERTY_SMALL;
 }
 
 /* Joints in order of discovery: those of the last model that still hold come first. */
@@ -235,7 +233,7 @@ void grrl_structure_update(struct grrl_perception *p)
     uint16_t n = 0;
     for (uint8_t a = 0; a < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++)
-            if (grrl_joint_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n]))
+            if (grrl_joints_weigh(p, a, b, &e[n]) && !is_slide_of_bent_bodies(p, &e[n]))
                 n++;
     }
     for (uint16_t i = 0; i < n; i++)
@@ -252,7 +250,7 @@ void grrl_structure_update(struct grrl_perception *p)
         describe_joint(p, &e[order[i]], &model->joint[i]);
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint8_t body = p->body_of[i];
-        bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].mass > 0.0f;
+        bool in_body = body < p->n_bodies && p->pose[p->n_keyframes - 1][body].weight > 0.0f;
         model->feature_id[i] = p->id[i];
         model->feature_body[i] = body;
         model->feature_m[i] =
@@ -280,7 +278,7 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     if (first == second || second >= model->n_bodies)
         return GRRL_ERR_ARGUMENT;
     struct grrl_joint_evidence e = {.fit = {.excited = false}};
-    (void)grrl_joint_weigh(perception, first, second, &e);
+    (void)grrl_joints_weigh(perception, first, second, &e);
     *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f};
     if (e.fit.excited) {
         pair->p_revolute = e.p[0];

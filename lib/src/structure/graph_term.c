@@ -25,7 +25,7 @@ static struct grrl_text complain(struct reader *reader, struct grrl_name name, c
     struct grrl_text message = grrl_text_begin(error->message, sizeof error->message);
     if (name.kind != GRRL_NAME_NONE) {
         grrl_text_string(&message, "link ");
-        grrl_print_name(&message, name);
+        grrl_term_print_name(&message, name);
         grrl_text_char(&message, ' ');
     }
     grrl_text_string(&message, what);
@@ -100,7 +100,7 @@ static enum grrl_status join(struct reader *reader, struct grrl_name from, struc
         struct grrl_text message =
             complain(reader, from, a == b ? "is joined to itself" : "is joined twice to ");
         if (a != b)
-            grrl_print_name(&message, to);
+            grrl_term_print_name(&message, to);
         return status;
     }
     if (reader->edges != NULL)
@@ -154,9 +154,9 @@ enum grrl_status grrl_graph_from_term(const struct grrl_term_store *store, grrl_
         return reject(&reader, GRRL_ERR_STRUCTURE, nobody, "an action is no structure");
     grrl_graph_clear(graph);
     struct grrl_walk walk;
-    grrl_walk_begin(&walk, store, term);
+    grrl_term_walk_begin(&walk, store, term);
     enum grrl_status status = GRRL_OK;
-    while (status == GRRL_OK && grrl_walk_next(&walk)) {
+    while (status == GRRL_OK && grrl_term_walk_next(&walk)) {
         const struct grrl_term_node *node = grrl_walk_node(&walk);
         if (walk.entering && node->kind == GRRL_TERM_LINK)
             status = read_link(&reader, node);

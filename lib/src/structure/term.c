@@ -36,7 +36,7 @@ const struct grrl_term_node *grrl_term_node_at(const struct grrl_term_store *sto
     return &store->nodes[term];
 }
 
-enum grrl_name_kind grrl_name_form(const char *text, size_t length)
+enum grrl_name_kind grrl_term_name_form(const char *text, size_t length)
 {
     if (length == 2 && text[0] == 'l' && text[1] == 'b')
         return GRRL_NAME_BACKGROUND;
@@ -61,7 +61,7 @@ enum grrl_status grrl_term_intern(struct grrl_term_store *store, const char *tex
                                   grrl_property *property)
 {
     if (length == 0 || length >= GRRL_SYMBOL_BYTES || !grrl_is_lower(text[0]) ||
-        grrl_name_form(text, length) != GRRL_NAME_NONE)
+        grrl_term_name_form(text, length) != GRRL_NAME_NONE)
         return GRRL_ERR_SYNTAX;
     for (size_t i = 1; i < length; i++)
         if (!grrl_is_word(text[i]))
@@ -207,7 +207,8 @@ enum grrl_status grrl_term_make_action(struct grrl_term_store *store, grrl_term 
     return GRRL_OK;
 }
 
-void grrl_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store, grrl_term term)
+void grrl_term_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store,
+                          grrl_term term)
 {
     walk->store = store;
     walk->path[0] = term;
@@ -216,7 +217,7 @@ void grrl_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store
     walk->started = false;
 }
 
-bool grrl_walk_next(struct grrl_walk *walk)
+bool grrl_term_walk_next(struct grrl_walk *walk)
 {
     if (!walk->started) {
         walk->started = true;

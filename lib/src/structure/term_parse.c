@@ -137,7 +137,7 @@ static uint32_t read_number(const struct parser *parser, size_t from, size_t end
 static enum grrl_status read_name(struct parser *parser, size_t from, size_t end,
                                   struct grrl_name *name)
 {
-    enum grrl_name_kind kind = grrl_name_form(parser->text + from, end - from);
+    enum grrl_name_kind kind = grrl_term_name_form(parser->text + from, end - from);
     uint32_t number = 0;
     if (kind != GRRL_NAME_BACKGROUND)
         number = read_number(parser, from + 1, end, UINT16_MAX);
@@ -153,7 +153,7 @@ static enum grrl_status read_property(struct parser *parser, size_t from, size_t
                                       grrl_property *property)
 {
     const char *word = parser->text + from;
-    enum grrl_name_kind kind = grrl_name_form(word, end - from);
+    enum grrl_name_kind kind = grrl_term_name_form(word, end - from);
     if (kind == GRRL_NAME_VARIABLE) {
         uint32_t number = read_number(parser, from + 1, end, GRRL_MAX_PROPERTY_VARIABLE);
         if (number > GRRL_MAX_PROPERTY_VARIABLE)
@@ -199,7 +199,7 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
         size_t end = word_end(parser, from);
         if (end == from)
             return unexpected(parser, from, "a property or the name of a link");
-        bool is_name = grrl_name_form(parser->text + from, end - from) != GRRL_NAME_NONE;
+        bool is_name = grrl_term_name_form(parser->text + from, end - from) != GRRL_NAME_NONE;
         parser->at = end;
         if (accept(parser, ',')) {
             if (n == GRRL_MAX_PROPERTIES)
@@ -235,7 +235,7 @@ static enum grrl_status read_link_or_name(struct parser *parser, const char *exp
             return unexpected(parser, parser->at, "'(' after L");
         return read_link(parser, from, term);
     }
-    if (grrl_name_form(parser->text + from, end - from) == GRRL_NAME_NONE)
+    if (grrl_term_name_form(parser->text + from, end - from) == GRRL_NAME_NONE)
         return unexpected(parser, from, expected);
     parser->at = end;
     struct grrl_name name;

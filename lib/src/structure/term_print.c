@@ -1,6 +1,6 @@
 #include "structure/term_private.h"
 
-void grrl_print_name(struct grrl_text *text, struct grrl_name name)
+void grrl_term_print_name(struct grrl_text *text, struct grrl_name name)
 {
     switch (name.kind) {
     case GRRL_NAME_LINK:
@@ -40,7 +40,7 @@ static void print_link(const struct grrl_term_store *store, struct grrl_text *te
                        const struct grrl_term_node *node)
 {
     if (node->n_properties == 0) {
-        grrl_print_name(text, node->name);
+        grrl_term_print_name(text, node->name);
         return;
     }
     grrl_text_string(text, "L(");
@@ -48,7 +48,7 @@ static void print_link(const struct grrl_term_store *store, struct grrl_text *te
         print_property(store, text, node->properties[i]);
         grrl_text_string(text, ", ");
     }
-    grrl_print_name(text, node->name);
+    grrl_term_print_name(text, node->name);
     grrl_text_char(text, ')');
 }
 
@@ -94,8 +94,8 @@ enum grrl_status grrl_term_print(const struct grrl_term_store *store, grrl_term 
         return GRRL_ERR_ARGUMENT;
     struct grrl_text out = grrl_text_begin(text, capacity);
     struct grrl_walk walk;
-    grrl_walk_begin(&walk, store, term);
-    while (grrl_walk_next(&walk)) {
+    grrl_term_walk_begin(&walk, store, term);
+    while (grrl_term_walk_next(&walk)) {
         const struct grrl_term_node *node = grrl_walk_node(&walk);
         if (!walk.entering) {
             print_tail(&out, node);

@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-#include "grrl/structure/term.h"
 #include "base/text.h"
+#include "grrl/structure/term.h"
 
 /* A variable as a property is GRRL_PROPERTY_VARIABLE + n. */
 enum { GRRL_PROPERTY_VARIABLE = 128, GRRL_MAX_PROPERTY_VARIABLE = 127 };
@@ -25,10 +25,11 @@ struct grrl_walk {
     bool started;
 };
 
-void grrl_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store, grrl_term term);
+void grrl_term_walk_begin(struct grrl_walk *walk, const struct grrl_term_store *store,
+                          grrl_term term);
 
 /* The next visit, false after the root was left. */
-bool grrl_walk_next(struct grrl_walk *walk);
+bool grrl_term_walk_next(struct grrl_walk *walk);
 
 static inline const struct grrl_term_node *grrl_walk_node(const struct grrl_walk *walk)
 {
@@ -67,8 +68,8 @@ static inline bool grrl_is_word(char c)
 }
 
 /* The kind of a name that this word has the form of; GRRL_NAME_NONE for an atom. */
-enum grrl_name_kind grrl_name_form(const char *text, size_t length);
+enum grrl_name_kind grrl_term_name_form(const char *text, size_t length);
 
-void grrl_print_name(struct grrl_text *text, struct grrl_name name);
+void grrl_term_print_name(struct grrl_text *text, struct grrl_name name);
 
 #endif

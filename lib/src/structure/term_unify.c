@@ -123,11 +123,11 @@ enum grrl_status grrl_term_unify(const struct grrl_term_store *store, grrl_term 
     uint16_t n_before = substitution->n;
     struct grrl_walk in_a;
     struct grrl_walk in_b;
-    grrl_walk_begin(&in_a, store, a);
-    grrl_walk_begin(&in_b, store, b);
+    grrl_term_walk_begin(&in_a, store, a);
+    grrl_term_walk_begin(&in_b, store, b);
     for (;;) {
-        bool more = grrl_walk_next(&in_a);
-        if (!grrl_walk_next(&in_b) || !more)
+        bool more = grrl_term_walk_next(&in_a);
+        if (!grrl_term_walk_next(&in_b) || !more)
             return GRRL_OK; /* one shape, so both walks end together */
         enum grrl_status status = GRRL_OK;
         if (in_a.depth != in_b.depth || in_a.entering != in_b.entering)
@@ -159,8 +159,8 @@ enum grrl_status grrl_term_substitute(struct grrl_term_store *store, grrl_term t
     grrl_term made[GRRL_WALK_DEPTH]; /* the copy of each node on the path, and its last argument */
     grrl_term last[GRRL_WALK_DEPTH];
     struct grrl_walk walk;
-    grrl_walk_begin(&walk, store, term);
-    while (grrl_walk_next(&walk)) {
+    grrl_term_walk_begin(&walk, store, term);
+    while (grrl_term_walk_next(&walk)) {
         if (!walk.entering)
             continue;
         const struct grrl_term_node *node = grrl_walk_node(&walk);

@@ -9,6 +9,10 @@
 
 #include <stdbool.h>
 
+#include "grrl/base/api.h"
+
+GRRL_API_BEGIN
+
 #define GRRL_PI 3.14159265358979f
 
 struct grrl_vec2 {
@@ -57,5 +61,7 @@ float grrl_wrap_rad(float angle_rad);
  */
 void grrl_principal_axes(float xx, float xy, float yy, float *major, float *minor,
                          struct grrl_vec2 *axis);
+
+GRRL_API_END
 
 #endif

@@ -9,6 +9,10 @@
 
 #include <stdint.h>
 
+#include "grrl/base/api.h"
+
+GRRL_API_BEGIN
+
 struct grrl_random {
     /* private */
     uint64_t state;
@@ -26,5 +30,7 @@ uint32_t grrl_random_below(struct grrl_random *random, uint32_t count);
 
 /* Uniform in [0, 1). */
 float grrl_random_uniform(struct grrl_random *random);
+
+GRRL_API_END
 
 #endif

@@ -8,6 +8,10 @@
 #ifndef GRRL_STATUS_H
 #define GRRL_STATUS_H
 
+#include "grrl/base/api.h"
+
+GRRL_API_BEGIN
+
 #if defined(__GNUC__)
 #define GRRL_MUST_USE __attribute__((warn_unused_result))
 #else
@@ -32,5 +36,7 @@ enum grrl_status {
 
 /* A short English text without a full stop, never NULL. */
 const char *grrl_status_text(enum grrl_status status);
+
+GRRL_API_END
 
 #endif

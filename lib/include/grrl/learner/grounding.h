@@ -8,7 +8,10 @@
 #ifndef GRRL_GROUNDING_H
 #define GRRL_GROUNDING_H
 
+#include "grrl/base/api.h"
 #include "grrl/perception/perception.h"
+
+GRRL_API_BEGIN
 
 /* Fill with grrl_grounding_config_default, then change what differs. */
 struct grrl_grounding_config {
@@ -66,5 +69,7 @@ GRRL_MUST_USE enum grrl_status grrl_grounding_push(const struct grrl_model *mode
                                                    const struct grrl_grounding_config *config,
                                                    uint8_t body, uint8_t direction,
                                                    struct grrl_push *push);
+
+GRRL_API_END
 
 #endif

@@ -19,12 +19,16 @@
 #ifndef GRRL_LEARNER_H
 #define GRRL_LEARNER_H
 
+#include "grrl/base/api.h"
 #include "grrl/learner/cases/case_base.h"
 #include "grrl/learner/cases/context.h"
-#include "grrl/learner/relational_q/experience.h"
 #include "grrl/learner/grounding.h"
-#include "grrl/perception/perception.h"
 #include "grrl/learner/policy.h"
+#include "grrl/learner/relational_q/experience.h"
+#include "grrl/learner/relational_state.h"
+#include "grrl/perception/perception.h"
+
+GRRL_API_BEGIN
 
 /* Memory for what is learned, the caller's. What the policy does not use may be NULL and 0. */
 struct grrl_learner_memory {
@@ -40,6 +44,7 @@ struct grrl_learner_config {
     struct grrl_perception_config perception;
     struct grrl_grounding_config grounding;
     struct grrl_policy_config policy;
+    float large_m; /* links at least this long have the property large; 0.15 */
     uint64_t seed;
 };
 
@@ -51,7 +56,7 @@ struct grrl_decision {
 };
 
 /* What a push taught. */
-struct grrl_lesson {
+struct grrl_update {
     float reward;        /* links and joints newly revealed, plus the trial's reward at its end */
     float target;        /* LEARN: the reward; PAPER: r + gamma max Q(s', a') */
     uint32_t experience; /* PAPER: the entry updated; GRRL_NO_EXPERIENCE: the state is too symmetric
@@ -68,7 +73,7 @@ struct grrl_learner {
     struct grrl_random random;
     struct grrl_graph state;    /* believed now: vertex i is body i of the model */
     struct grrl_graph acted_on; /* believed when the last choice was made */
-    struct grrl_recall recall;  /* of state, for the last choice or lesson */
+    struct grrl_recall recall;  /* of state, for the last choice or update */
     struct grrl_trial_attempts attempts;
     struct grrl_contexts contexts; /* of state, for the last choice */
     struct grrl_choice last_choice;
@@ -121,7 +126,7 @@ GRRL_MUST_USE enum grrl_status grrl_learner_adopt(struct grrl_learner *learner,
  * reward is added and nothing follows. GRRL_ERR_ORDER. With the random policy nothing is stored.
  */
 GRRL_MUST_USE enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
-                                                  struct grrl_lesson *lesson);
+                                                  struct grrl_update *update);
 
 /* Forgets the trial, nothing is learned from a push without an outcome. */
 void grrl_learner_abandon_trial(struct grrl_learner *learner);
@@ -134,12 +139,12 @@ struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learn
  * loaded. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_learner_save(const struct grrl_learner *learner,
-                                                 const struct grrl_experience_io *io);
+                                                 const struct grrl_io *io);
 
 /* Replaces all that was learned; statuses as of grrl_experience_load. After a failure the learner
  * knows nothing. */
 GRRL_MUST_USE enum grrl_status grrl_learner_load(struct grrl_learner *learner,
-                                                 const struct grrl_experience_io *io);
+                                                 const struct grrl_io *io);
 
 /*
  * As grrl_learner_load, for a file that ends early: after GRRL_ERR_IO, and only then, the learner
@@ -147,11 +152,12 @@ GRRL_MUST_USE enum grrl_status grrl_learner_load(struct grrl_learner *learner,
  * stood behind a header that is cut off is not counted.
  */
 GRRL_MUST_USE enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner,
-                                                      const struct grrl_experience_io *io,
-                                                      uint32_t *lost);
+                                                      const struct grrl_io *io, uint32_t *lost);
 
 /* The believed structure as a term, D(lb, ..), links named fn with their properties. */
 GRRL_MUST_USE enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
                                                  struct grrl_term_store *store, grrl_term *term);
+
+GRRL_API_END
 
 #endif

@@ -12,9 +12,12 @@
 #ifndef GRRL_POLICY_H
 #define GRRL_POLICY_H
 
+#include "grrl/base/api.h"
+#include "grrl/base/random.h"
 #include "grrl/learner/cases/case_base.h"
 #include "grrl/learner/relational_q/experience.h"
-#include "grrl/base/random.h"
+
+GRRL_API_BEGIN
 
 enum grrl_policy_kind { GRRL_POLICY_LEARN, GRRL_POLICY_PAPER, GRRL_POLICY_RANDOM };
 
@@ -98,5 +101,7 @@ void grrl_policy_explain(const struct grrl_policy_config *config,
 /* max_a Q(s, a) over the known actions, 0 when none is known. */
 float grrl_policy_best_value(const struct grrl_experience_store *store,
                              const struct grrl_recall *recall);
+
+GRRL_API_END
 
 #endif

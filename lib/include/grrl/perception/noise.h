@@ -14,7 +14,10 @@
 #ifndef GRRL_NOISE_H
 #define GRRL_NOISE_H
 
+#include "grrl/base/api.h"
 #include "grrl/perception/perception.h"
+
+GRRL_API_BEGIN
 
 #define GRRL_NOISE_BINS 512
 #define GRRL_NOISE_MIN_SAMPLES 100 /* differences along an axis; two a point in three frames */
@@ -49,5 +52,7 @@ void grrl_noise_observe(struct grrl_noise *noise, const struct grrl_frame *frame
  * over the bins.
  */
 GRRL_MUST_USE enum grrl_status grrl_noise_estimate(const struct grrl_noise *noise, float *sigma_m);
+
+GRRL_API_END
 
 #endif

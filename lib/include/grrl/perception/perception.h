@@ -19,10 +19,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "grrl/base/api.h"
 #include "grrl/base/config.h"
 #include "grrl/base/geometry.h"
-#include "grrl/structure/graph.h"
+#include "grrl/base/joint_type.h"
 #include "grrl/base/status.h"
+
+GRRL_API_BEGIN
 
 /* The points visible at one time: table plane, right-handed, metres. Ids are any numbers that stay
  * with a feature; their order means nothing. */
@@ -44,7 +47,6 @@ struct grrl_perception_config {
     float min_slide_m;   /* relative sliding below this supports no joint type; 0.00175 */
     float pivot_scale_m; /* pivots farther than this from their bodies are unlikely; 0.1 */
     float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
-    float large_m;       /* links at least this long have the property large; 0.15 */
     float
         slack; /* how much more than noise a split needs, >= 1; 1. Pictures are no exact plane: 4 */
     uint8_t min_features;   /* fewer features are no body; 4 */
@@ -63,7 +65,6 @@ struct grrl_body {
     struct grrl_vec2 axis; /* unit vector along the principal axis, without a meaningful sign */
     float length_m;        /* extent of the cloud along the axis */
     float width_m;         /* and across */
-    grrl_label properties; /* byte 0: GRRL_PROPERTY_SMALL or GRRL_PROPERTY_LARGE */
 };
 
 /* A joint between bodies a < b (indices), as it lies now in the world frame. */
@@ -145,7 +146,7 @@ struct grrl_perception_keyframe {
 /* private: a body's pose in one keyframe, in units of one frame's noise */
 struct grrl_perception_pose {
     struct grrl_pose pose;
-    float mass;    /* sum of its features' weights, 0: not seen */
+    float weight;  /* sum of its features' weights, 0: not seen */
     float inertia; /* sum of weight times squared distance from the centroid, m^2 */
 };
 
@@ -225,9 +226,6 @@ const struct grrl_model *grrl_perception_model(const struct grrl_perception *per
 GRRL_MUST_USE enum grrl_status grrl_perception_pair(const struct grrl_perception *perception,
                                                     uint8_t a, uint8_t b, struct grrl_pair *pair);
 
-/* The structure of a model: vertex i is body i, edge order is the order of discovery. names and
- * edges as in grrl_graph_from_term; either may be NULL. */
-void grrl_model_graph(const struct grrl_model *model, struct grrl_graph *graph,
-                      struct grrl_name *names, struct grrl_edge *edges);
+GRRL_API_END
 
 #endif

@@ -13,8 +13,11 @@
 
 #include <stdint.h>
 
-#include "grrl/structure/graph.h"
+#include "grrl/base/api.h"
+#include "grrl/base/joint_type.h"
 #include "grrl/base/status.h"
+
+GRRL_API_BEGIN
 
 /* The fewest samples a trajectory may have. */
 enum { GRRL_TRAJECTORY_MIN_SAMPLES = 5 };
@@ -70,5 +73,7 @@ void grrl_trajectory_config_default(struct grrl_trajectory_config *config);
 GRRL_MUST_USE enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory,
                                                       const struct grrl_trajectory_config *config,
                                                       struct grrl_trajectory_fit *fit);
+
+GRRL_API_END
 
 #endif

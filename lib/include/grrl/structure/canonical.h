@@ -9,7 +9,10 @@
 #ifndef GRRL_CANONICAL_H
 #define GRRL_CANONICAL_H
 
+#include "grrl/base/api.h"
 #include "grrl/structure/graph.h"
+
+GRRL_API_BEGIN
 
 struct grrl_canonical {
     struct grrl_graph graph;       /* labels cut to the mask */
@@ -27,5 +30,7 @@ GRRL_MUST_USE enum grrl_status grrl_canonical_of(const struct grrl_graph *graph,
 #ifndef GRRL_CANONICAL_BUDGET
 #define GRRL_CANONICAL_BUDGET 2000
 #endif
+
+GRRL_API_END
 
 #endif

@@ -10,11 +10,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "grrl/base/api.h"
 #include "grrl/base/config.h"
+#include "grrl/base/joint_type.h"
 #include "grrl/base/status.h"
 #include "grrl/structure/term.h"
 
-enum grrl_joint_type { GRRL_REVOLUTE = 0, GRRL_PRISMATIC = 1, GRRL_JOINT_TYPES = 2 };
+GRRL_API_BEGIN
 
 /* No joint between two links, as an answer of grrl_graph_joint. */
 enum { GRRL_NO_JOINT = -1 };
@@ -108,5 +110,7 @@ GRRL_MUST_USE enum grrl_status grrl_graph_to_term(struct grrl_term_store *store,
                                                   const struct grrl_name *names,
                                                   const struct grrl_edge *edges, uint8_t n_edges,
                                                   bool with_background, grrl_term *term);
+
+GRRL_API_END
 
 #endif

@@ -16,8 +16,11 @@
 #ifndef GRRL_MATCH_H
 #define GRRL_MATCH_H
 
+#include "grrl/base/api.h"
 #include "grrl/structure/graph.h"
 #include "grrl/structure/signature.h"
+
+GRRL_API_BEGIN
 
 enum grrl_match_kind {
     GRRL_MATCH_ISOMORPHISM, /* one to one and onto, edges and non-edges kept */
@@ -143,5 +146,7 @@ GRRL_MUST_USE enum grrl_status grrl_match_tree(const struct grrl_match_plan *pat
  */
 GRRL_MUST_USE enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label mask,
                                                  uint32_t budget, uint8_t *orbit);
+
+GRRL_API_END
 
 #endif

@@ -8,7 +8,10 @@
 #ifndef GRRL_SIGNATURE_H
 #define GRRL_SIGNATURE_H
 
+#include "grrl/base/api.h"
 #include "grrl/structure/graph.h"
+
+GRRL_API_BEGIN
 
 /*
  * The first two words are about the shape: links; joints by type; links with two or more revolute,
@@ -68,5 +71,7 @@ static inline bool grrl_paths_within(const struct grrl_paths *part, const struct
         lacking |= part->word[i] & ~whole->word[i];
     return (((fits & full) ^ full) | lacking) == 0;
 }
+
+GRRL_API_END
 
 #endif

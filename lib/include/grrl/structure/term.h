@@ -25,8 +25,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "grrl/base/api.h"
 #include "grrl/base/config.h"
 #include "grrl/base/status.h"
+
+GRRL_API_BEGIN
 
 typedef uint16_t grrl_term;
 
@@ -176,5 +179,7 @@ GRRL_MUST_USE enum grrl_status grrl_term_unify(const struct grrl_term_store *sto
 GRRL_MUST_USE enum grrl_status grrl_term_substitute(struct grrl_term_store *store, grrl_term term,
                                                     const struct grrl_substitution *substitution,
                                                     grrl_term *copy);
+
+GRRL_API_END
 
 #endif

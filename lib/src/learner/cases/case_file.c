@@ -1,8 +1,8 @@
 #include <string.h>
 
-#include "grrl/learner/cases/case_base.h"
-#include "grrl/base/geometry.h"
 #include "base/record.h"
+#include "grrl/base/geometry.h"
+#include "grrl/learner/cases/case_base.h"
 
 /* The layout is described in case_base.h. */
 enum {
@@ -18,8 +18,7 @@ _Static_assert((int)GRRL_RECORD_BYTES >= (int)HEADER_BYTES &&
 
 static const uint8_t magic[8] = {'G', 'R', 'R', 'L', 'c', 'a', 's', 0};
 
-enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
-                                 const struct grrl_experience_io *io)
+enum grrl_status grrl_cases_save(const struct grrl_case_base *base, const struct grrl_io *io)
 {
     struct grrl_record record = {.io = io};
     memcpy(record.bytes, magic, sizeof magic);
@@ -125,8 +124,8 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
     return GRRL_OK;
 }
 
-enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
-                                      const struct grrl_experience_io *io, uint32_t *lost)
+enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base, const struct grrl_io *io,
+                                      uint32_t *lost)
 {
     struct grrl_record record = {.io = io};
     uint32_t n = 0;
@@ -150,7 +149,7 @@ enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
     return status;
 }
 
-enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_experience_io *io)
+enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_io *io)
 {
     uint32_t lost;
     enum grrl_status status = grrl_cases_load_torn(base, io, &lost);

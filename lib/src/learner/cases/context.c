@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "grrl/base/geometry.h"
-#include "grrl/structure/graph.h"
 #include "grrl/learner/grounding.h"
+#include "grrl/structure/graph.h"
 
 /* A neighbour lies ahead or behind within about 70 degrees of the push. */
 #define AHEAD_COSINE 0.35f

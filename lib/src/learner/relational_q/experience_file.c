@@ -1,9 +1,9 @@
 #include <string.h>
 
 #include "base/bits.h"
-#include "learner/relational_q/experience_private.h"
-#include "grrl/base/geometry.h"
 #include "base/record.h"
+#include "grrl/base/geometry.h"
+#include "learner/relational_q/experience_private.h"
 
 /* The layout is described in experience.h. */
 enum { FILE_VERSION = 2, HEADER_BYTES = 24, LINK_BYTES = 16, EXPERIENCE_BYTES = 26 };
@@ -17,7 +17,7 @@ _Static_assert(GRRL_JOINT_TYPES == 2, "a new joint type is a new file version");
 static const uint8_t magic[8] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0};
 
 enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
-                                      const struct grrl_experience_io *io)
+                                      const struct grrl_io *io)
 {
     struct grrl_record record = {.io = io};
     memcpy(record.bytes, magic, sizeof magic);
@@ -176,8 +176,8 @@ static enum grrl_status read_experience(struct grrl_experience_store *store,
     return GRRL_OK;
 }
 
-static enum grrl_status read_all(struct grrl_experience_store *store,
-                                 const struct grrl_experience_io *io, struct header *header)
+static enum grrl_status read_all(struct grrl_experience_store *store, const struct grrl_io *io,
+                                 struct header *header)
 {
     struct grrl_record record = {.io = io};
     enum grrl_status status = read_header(store, &record, header);
@@ -198,7 +198,7 @@ static void drop_unused_states(struct grrl_experience_store *store)
 }
 
 enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
-                                           const struct grrl_experience_io *io, uint32_t *lost)
+                                           const struct grrl_io *io, uint32_t *lost)
 {
     struct header header = {0};
     grrl_experience_clear(store);
@@ -216,8 +216,7 @@ enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
     return status;
 }
 
-enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
-                                      const struct grrl_experience_io *io)
+enum grrl_status grrl_experience_load(struct grrl_experience_store *store, const struct grrl_io *io)
 {
     uint32_t lost;
     enum grrl_status status = grrl_experience_load_torn(store, io, &lost);

@@ -24,8 +24,11 @@
 #ifndef GRRL_CASE_BASE_H
 #define GRRL_CASE_BASE_H
 
+#include "grrl/base/api.h"
 #include "grrl/learner/cases/context.h"
 #include "grrl/learner/relational_q/experience.h"
+
+GRRL_API_BEGIN
 
 /* Fill with grrl_case_config_default, then change what differs. */
 struct grrl_case_config {
@@ -110,15 +113,16 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
  * runs on. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
-                                               const struct grrl_experience_io *io);
+                                               const struct grrl_io *io);
 
 /* Replaces the cases; statuses as of grrl_experience_load, and empty after a failure. */
 GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
-                                               const struct grrl_experience_io *io);
+                                               const struct grrl_io *io);
 
 /* As grrl_experience_load_torn. */
 GRRL_MUST_USE enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
-                                                    const struct grrl_experience_io *io,
-                                                    uint32_t *lost);
+                                                    const struct grrl_io *io, uint32_t *lost);
+
+GRRL_API_END
 
 #endif

@@ -8,8 +8,11 @@
 #ifndef GRRL_CONTEXT_H
 #define GRRL_CONTEXT_H
 
+#include "grrl/base/api.h"
 #include "grrl/perception/perception.h"
 #include "grrl/structure/term.h"
+
+GRRL_API_BEGIN
 
 /* The parts of a context. Lengths are in octaves of `large_m`: 0 below 0.6 of it, 1 below 1.2, 2
  * below 2.4, 3 below 4.8, 4 beyond. */
@@ -65,5 +68,7 @@ GRRL_MUST_USE enum grrl_status grrl_context_of(const struct grrl_trial_attempts 
                                                const struct grrl_model *model, float large_m,
                                                uint8_t body,
                                                struct grrl_context contexts[GRRL_DIRECTIONS]);
+
+GRRL_API_END
 
 #endif

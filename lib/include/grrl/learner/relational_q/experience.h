@@ -21,9 +21,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "grrl/base/api.h"
+#include "grrl/base/io.h"
 #include "grrl/structure/canonical.h"
 #include "grrl/structure/graph.h"
 #include "grrl/structure/match.h"
+
+GRRL_API_BEGIN
 
 /* Q statistics of one experience. */
 struct grrl_q {
@@ -144,13 +148,6 @@ struct grrl_recall_config {
     bool strict;     /* no property is ever dropped */
 };
 
-/* Serialised reading and writing: return 0 when all `size` bytes were transferred. */
-struct grrl_experience_io {
-    void *context;
-    int (*write)(void *context, const void *bytes, size_t size);
-    int (*read)(void *context, void *bytes, size_t size);
-};
-
 /* Capacities below GRRL_NO_EXPERIENCE; with one of 0 (its memory may be NULL) nothing is stored.
  * Without an index. */
 void grrl_experience_init(struct grrl_experience_store *store, struct grrl_experience_state *states,
@@ -218,7 +215,7 @@ void grrl_experience_touch(struct grrl_experience_store *store, uint32_t index);
  * bytes. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_save(const struct grrl_experience_store *store,
-                                                    const struct grrl_experience_io *io);
+                                                    const struct grrl_io *io);
 
 /*
  * Replaces the store's content. Nothing of a file is used before it is checked; bytes after the
@@ -228,12 +225,13 @@ GRRL_MUST_USE enum grrl_status grrl_experience_save(const struct grrl_experience
  * records than the store has room for. After a failure the store is empty.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
-                                                    const struct grrl_experience_io *io);
+                                                    const struct grrl_io *io);
 
 /* As grrl_experience_load, but after GRRL_ERR_IO, and only then, the store holds the experiences
  * that were whole; *lost becomes the number of those the header announced beyond them. */
 GRRL_MUST_USE enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
-                                                         const struct grrl_experience_io *io,
-                                                         uint32_t *lost);
+                                                         const struct grrl_io *io, uint32_t *lost);
+
+GRRL_API_END
 
 #endif

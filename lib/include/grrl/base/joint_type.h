@@ -1,0 +1,10 @@
+/*
+ * joint_type.h: the two joints of planar mechanisms. Perception finds them, structures are made of
+ * them; there are two by design (docs/design.md).
+ */
+#ifndef GRRL_BASE_JOINT_TYPE_H
+#define GRRL_BASE_JOINT_TYPE_H
+
+enum grrl_joint_type { GRRL_REVOLUTE = 0, GRRL_PRISMATIC = 1, GRRL_JOINT_TYPES = 2 };
+
+#endif
