@@ -3,6 +3,7 @@
 #define GRRL_CHANNELS_H
 
 #define GRRL_CHANNEL_POINTS "GRRL_POINTS"             /* points_t */
+#define GRRL_CHANNEL_IMAGE "GRRL_IMAGE"               /* image_t */
 #define GRRL_CHANNEL_PUSH_COMMAND "GRRL_PUSH_COMMAND" /* push_command_t */
 #define GRRL_CHANNEL_PUSH_STATUS "GRRL_PUSH_STATUS"   /* push_status_t */
 #define GRRL_CHANNEL_TRIAL "GRRL_TRIAL"               /* trial_t */

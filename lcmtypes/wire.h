@@ -20,6 +20,7 @@
 #include "channels.h"
 #include "grrl_agent_status_t.h"
 #include "grrl_decision_t.h"
+#include "grrl_image_t.h"
 #include "grrl_model_t.h"
 #include "grrl_points_t.h"
 #include "grrl_push_command_t.h"
@@ -31,7 +32,9 @@ enum {
     GRRL_WIRE_MAX_POINTS = 256,
     GRRL_WIRE_MAX_LINKS = 32,
     GRRL_WIRE_MAX_JOINTS = 64,
-    GRRL_WIRE_MAX_BYTES = 4096 /* the largest message, encoded, fits */
+    GRRL_WIRE_MAX_BYTES = 4096,              /* the largest message but image_t, encoded, fits */
+    GRRL_WIRE_MAX_PICTURE = 4 * 1024 * 1024, /* bytes of an image_t's picture */
+    GRRL_WIRE_MAX_IMAGE_BYTES = GRRL_WIRE_MAX_PICTURE + 128 /* an image_t, encoded, fits */
 };
 
 /* Why a message was refused: type, field and value, in English. */
@@ -70,9 +73,16 @@ struct grrl_wire_model {
     int8_t feature_link[GRRL_WIRE_MAX_POINTS];
 };
 
+/* For processes that deal in pictures; of static storage or on the heap, never on the stack. */
+struct grrl_wire_image {
+    grrl_image_t message;
+    uint8_t data[GRRL_WIRE_MAX_PICTURE];
+};
+
 /* Points the message's arrays at its own storage; before filling one by hand. */
 void grrl_wire_bind_points(struct grrl_wire_points *points);
 void grrl_wire_bind_model(struct grrl_wire_model *model);
+void grrl_wire_bind_image(struct grrl_wire_image *image);
 
 bool grrl_wire_decode_points(const void *data, uint32_t size, struct grrl_wire_points *out,
                              struct grrl_wire_why *why);
@@ -89,7 +99,11 @@ bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t 
 bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
                                    struct grrl_wire_why *why);
 
-/* capacity: bytes at data; GRRL_WIRE_MAX_BYTES is enough for every message. */
+bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_image *out,
+                            struct grrl_wire_why *why);
+
+/* capacity: bytes at data; GRRL_WIRE_MAX_BYTES is enough for every message but image_t, for which
+ * GRRL_WIRE_MAX_IMAGE_BYTES is. */
 int grrl_wire_encode_points(const grrl_points_t *message, int capacity, uint8_t *data,
                             struct grrl_wire_why *why);
 int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *data,
@@ -104,5 +118,7 @@ int grrl_wire_encode_decision(const grrl_decision_t *message, int capacity, uint
                               struct grrl_wire_why *why);
 int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capacity, uint8_t *data,
                                   struct grrl_wire_why *why);
+int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
+                           struct grrl_wire_why *why);
 
 #endif

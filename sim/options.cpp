@@ -68,6 +68,14 @@ bool parse_noise(const char *text, double &noise_m)
     return true;
 }
 
+bool parse_look(const char *text, CameraLook &look)
+{
+    std::string problem = parse_camera_look(text, look);
+    if (!problem.empty())
+        (void)std::fprintf(stderr, "grrl-sim: --camera-look %s\n", problem.c_str());
+    return problem.empty();
+}
+
 /* The one list of options: getopt's table and --help are both made from it. */
 struct Row {
     const char *name;
@@ -95,6 +103,10 @@ const Row table[] = {
      [](const char *t, Options &o) {
          return parse_double("outliers", t, 0.0, 1.0, o.tracker.outlier_probability);
      }},
+    {"camera", nullptr, "publish pictures for grrl-track instead of points (needs OpenCV)",
+     [](const char *, Options &o) { return o.camera = true; }},
+    {"camera-look", "NAME=X,..", "how the camera sees, see below",
+     [](const char *t, Options &o) { return parse_look(t, o.look); }},
     {"real-time", nullptr, "30 frames a second instead of lock-step with the agent",
      [](const char *, Options &o) { return o.real_time = true; }},
     {"agent-timeout", "S", "give up when no agent is heard for S seconds (wait for ever)",
@@ -124,6 +136,7 @@ void print_help()
             left += std::string(" ") + row.argument;
         (void)std::printf("  %-18s %s\n", left.c_str(), row.help);
     }
+    (void)std::printf("\nThe camera's look:\n%s", camera_look_help().c_str());
     (void)std::printf("\nWithout --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
                       "Exit status: 0 all trials done or stopped by a signal; 1 trouble; 2 wrong\n"
                       "command line.\n");

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tracker.hpp"
+#include "camera.hpp"
 
 namespace grrl_sim
 {
@@ -16,6 +16,8 @@ struct Options {
     uint64_t seed = 1;
     int cap = 100;
     TrackerParams tracker;
+    bool camera = false; /* pictures instead of points, with this look */
+    CameraLook look;
     bool real_time = false;
     bool quiet = false;
     double agent_timeout_s = 0.0; /* 0: wait for ever */

@@ -32,7 +32,7 @@ constexpr size_t least_share_agreeing = 3; /* one of three: a shadow agrees with
 constexpr float moved_px = 0.7f;
 constexpr float still_px = 0.35f; /* from picture to picture */
 constexpr size_t still_outliers = 2;
-constexpr int still_frames = 4;
+constexpr int least_still_frames = 4;
 constexpr int judging_frame = 8; /* of a rest */
 constexpr int birth_frame = 3;
 constexpr int most_doubts = 2;
@@ -47,6 +47,7 @@ void Eye::reset()
     first_id_ = next_id_;
     rest_frames_ = 0;
     rest_period_ = 0;
+    still_frames_ = 0;
     last_pyramid_.clear();
 }
 
@@ -225,8 +226,9 @@ void Eye::watch_rest(Motion motion)
                 feature.has_moved || std::hypot(feature.pose.x - feature.patch.x(),
                                                 feature.pose.y - feature.patch.y()) > moved_px;
         }
-    static_assert(still_frames < birth_frame + 8, "rest is seen before it is used");
-    bool rest = motion == Motion::REST || (motion == Motion::UNKNOWN && moving <= still_outliers);
+    still_frames_ = moving <= still_outliers ? still_frames_ + 1 : 0;
+    bool rest = motion == Motion::REST ||
+                (motion == Motion::UNKNOWN && still_frames_ >= least_still_frames);
     rest_period_ += rest && rest_frames_ == 0;
     rest_frames_ = rest ? rest_frames_ + 1 : 0;
 }

@@ -112,6 +112,7 @@ private:
     int32_t next_id_ = 1;
     int rest_frames_ = 0; /* in a row */
     int rest_period_ = 0;
+    int still_frames_ = 0; /* in a row, as seen */
     cv::Mat grey_;
     cv::Mat smooth_; /* CV_32F */
     std::vector<cv::Mat> pyramid_;
