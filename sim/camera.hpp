@@ -26,7 +26,7 @@ struct CameraLook {
     double blur_px = 0.6;    /* standard deviation of the lens' spot, 0 .. 5 */
     double gradient = 0.2; /* share of the light that is missing in the darkest corner, 0 .. 0.9 */
     double shadow = 0.35;  /* share of the light that a shadow takes, 0 .. 0.9 */
-    double distortion = 0.0; /* at half the width a point is off by this share, -0.2 .. 0.2 */
+    double distortion = 0.0; /* of the lens, see scene.hpp; below 0 is a barrel, -0.2 .. 0.2 */
     double table_texture =
         2.5; /* standard deviation of the table's pattern, grey levels, 0 .. 60 */
     double link_texture = 28.0; /* of the links' patterns, 0 .. 60 */

@@ -12,7 +12,6 @@ constexpr int texels_per_px = 2;
 constexpr double shadow_x_px = 3.0; /* of the light's direction and the links' height */
 constexpr double shadow_y_px = 4.0;
 constexpr double shadow_soft_px = 1.5;
-constexpr int lens_iterations = 20;
 const cv::Vec3f table_colour(150.0f, 165.0f, 170.0f);
 const cv::Vec3f finger_colour(60.0f, 190.0f, 40.0f);
 
@@ -143,9 +142,10 @@ void Scene::make_lens()
 Vec2 Scene::to_px(Vec2 point_m) const
 {
     double s = 0.001 * look_.mm_per_px;
-    Vec2 out{point_m.x / s, -point_m.y / s};
     double half = 0.5 * look_.width_px;
-    double stretch = 1.0 + look_.distortion * dot(out, out) / (half * half);
+    Vec2 out{point_m.x / s, -point_m.y / s};
+    double root = 1.0 - 4.0 * look_.distortion * dot(out, out) / (half * half);
+    double stretch = 2.0 / (1.0 + std::sqrt(std::max(0.0, root)));
     return {0.5 * (look_.width_px - 1) + stretch * out.x,
             0.5 * (look_.height_px - 1) + stretch * out.y};
 }
@@ -155,9 +155,7 @@ Vec2 Scene::to_m(Vec2 point_px) const
     double s = 0.001 * look_.mm_per_px;
     double half = 0.5 * look_.width_px;
     Vec2 bent{point_px.x - 0.5 * (look_.width_px - 1), point_px.y - 0.5 * (look_.height_px - 1)};
-    Vec2 out = bent;
-    for (int i = 0; i < lens_iterations; i++)
-        out = (1.0 / (1.0 + look_.distortion * dot(out, out) / (half * half))) * bent;
+    Vec2 out = (1.0 / (1.0 + look_.distortion * dot(bent, bent) / (half * half))) * bent;
     return {s * out.x, -s * out.y};
 }
 

@@ -3,8 +3,8 @@
  * light, lens and sensor add. Only in builds with OpenCV.
  *
  * A point (x, y) m of the table lies at pixel (width / 2 + x / s, height / 2 - y / s), half a pixel
- * less each, since pixel (0, 0) has its centre there; a lens with distortion moves it from the
- * centre outward or inward.
+ * less each, since pixel (0, 0) has its centre there. A lens with distortion k shows it elsewhere
+ * on the ray from the centre: what is seen at r, in halves of the width, lies at r / (1 + k r^2).
  */
 #ifndef GRRL_SIM_SCENE_HPP
 #define GRRL_SIM_SCENE_HPP

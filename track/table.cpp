@@ -16,7 +16,6 @@ namespace grrl_track
 namespace
 {
 
-constexpr int bend_iterations = 30;
 constexpr double least_board_error_px = 1.0;
 constexpr double distortion_range = 0.25;
 constexpr int distortion_steps = 40; /* of a golden section */
@@ -40,20 +39,18 @@ bool thin(cv::Point2d a, cv::Point2d b, cv::Point2d c)
 cv::Point2d Table::straighten(cv::Point2d px) const
 {
     cv::Point2d centre(0.5 * (picture_.width - 1), 0.5 * (picture_.height - 1));
+    cv::Point2d out = px - centre;
     double half = 0.5 * picture_.width;
-    cv::Point2d bent = px - centre;
-    cv::Point2d out = bent;
-    for (int i = 0; distortion_ != 0.0 && i < bend_iterations; i++)
-        out = bent * (1.0 / (1.0 + distortion_ * out.dot(out) / (half * half)));
-    return centre + out;
+    return centre + out * (1.0 / (1.0 + distortion_ * out.dot(out) / (half * half)));
 }
 
 cv::Point2d Table::bend(cv::Point2d straight) const
 {
     cv::Point2d centre(0.5 * (picture_.width - 1), 0.5 * (picture_.height - 1));
-    double half = 0.5 * picture_.width;
     cv::Point2d out = straight - centre;
-    return centre + out * (1.0 + distortion_ * out.dot(out) / (half * half));
+    double half = 0.5 * picture_.width;
+    double root = 1.0 - 4.0 * distortion_ * out.dot(out) / (half * half);
+    return centre + out * (2.0 / (1.0 + std::sqrt(std::max(0.0, root))));
 }
 
 cv::Point2d Table::to_m(cv::Point2d px) const

@@ -1,10 +1,10 @@
 /*
  * table.hpp: from pixels to metres on the table.
  *
- * A camera that looks straight or at a slant onto a plane is a homography; a lens with distortion
- * first moves every point along the ray from the picture's centre, by the share k at half the
- * picture's width. Both come from a scale, from points whose place is known, or from a picture of a
- * checkerboard.
+ * A camera that looks straight or at a slant onto a plane is a homography. A lens with distortion k
+ * moves points along the ray from the picture's centre: one seen at r, in halves of the picture's
+ * width, should be at r / (1 + k r^2) (Fitzgibbon's division model). Both come from a scale, from
+ * points whose place is known, or from a picture of a checkerboard.
  */
 #ifndef GRRL_TRACK_TABLE_HPP
 #define GRRL_TRACK_TABLE_HPP

@@ -1,22 +1,18 @@
 /*
  * track_scenes OBJECT SEED SCENES PUSHES [LOOK]: how well the eye sees, and what perception makes
- * of it.
+ * of it. docs/camera.md has its figures.
  *
- * In each scene random pushes; ideal points and those of the eye, of the same pictures, go to a
- * perception each. Prints after how many scenes both have the right structure at each push, how far
- * points are off at rest, and the time a picture takes.
+ * In each scene random pushes, chosen by what is believed from ideal points; those and the points
+ * of the eye, of the same pictures, go to a perception each. Prints in how many scenes each has
+ * the right structure after each push, how far points are off at rest, and the time of a picture.
  */
-#include <time.h>
-
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <map>
+#include <memory>
 
 #include <opencv2/core/utility.hpp>
 
-#include "eye.hpp"
-#include "scene.hpp"
+#include "eye_bench.hpp"
 #include "structure.hpp"
 #include "supervisor.hpp"
 
@@ -27,223 +23,148 @@ extern "C" {
 }
 
 using namespace grrl_sim;
+using eye_bench::EyeBench;
 
 namespace
 {
 
-constexpr int rest_frames = 10;
-
-double cpu_s()
-{
-    timespec now{};
-    (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+enum Eyes { IDEAL, PIXELS, EYES };
+constexpr uint64_t push_stream = 99;
+constexpr float large_m = 0.15f;
 
 struct Sum {
-    std::vector<double> error_px;
+    std::vector<double> errors_px;
     double seconds = 0.0;
-    double slowest = 0.0;
+    double slowest_s = 0.0;
     int frames = 0;
     double visible = 0.0;
-    std::vector<int> right[2]; /* scenes, by push: ideal points, the eye */
+    std::vector<int> right[EYES]; /* scenes, by push */
 };
 
-/* Where a point was born: on which link, and where on it. */
-struct Home {
-    int link;
-    Vec2 place;
-};
-
-class Bench
+class Trial
 {
 public:
-    Bench(const ObjectSpec &object, const CameraLook &look, uint64_t seed, Sum &sum)
-        : object_(object), look_(look), world_(object, params(look), seed),
-          scene_(object, look, seed), sum_(sum), supervisor_(visible_structure(object))
+    Trial(const ObjectSpec &object, const CameraLook &look, uint64_t seed)
+        : bench_(object, look, seed, [this](bool pushing) { observe(pushing); }),
+          supervisor_(visible_structure(object))
     {
         grrl_perception_config config;
         grrl_perception_config_default(&config);
-        for (auto &p : perception_)
-            (void)!grrl_perception_init(p.get(), &config);
-        if (std::getenv("MODEL_MM")) {
-            config.model_error_m = 0.001f * static_cast<float>(std::atof(std::getenv("MODEL_MM")));
-            if (std::getenv("NOISE_MM"))
-                config.noise_m = 0.001f * static_cast<float>(std::atof(std::getenv("NOISE_MM")));
-            (void)!grrl_perception_init(perception_[1].get(), &config);
+        for (auto &perception : perception_) {
+            perception = std::make_unique<grrl_perception>();
+            (void)!grrl_perception_init(perception.get(), &config);
         }
         grrl_grounding_config_default(&grounding_);
-        grrl_random_init(&random_, seed, 99);
+        grrl_random_init(&random_, seed, push_stream);
         rest();
-    }
-
-    static WorldParams params(const CameraLook &look)
-    {
-        WorldParams p;
-        p.table_m = camera_view_m(look);
-        return p;
     }
 
     void push()
     {
-        const grrl_model *model = grrl_perception_model(perception_[0].get());
-        grrl_push push;
+        const grrl_model *model = grrl_perception_model(perception_[IDEAL].get());
         auto body = static_cast<uint8_t>(grrl_random_below(&random_, model->n_bodies));
-        auto direction = static_cast<uint8_t>(grrl_random_below(&random_, GRRL_DIRECTIONS));
-        if (grrl_grounding_push(model, &grounding_, body, direction, &push) == GRRL_OK) {
+        auto turn = static_cast<uint8_t>(grrl_random_below(&random_, GRRL_DIRECTIONS));
+        grrl_push push;
+        if (grrl_grounding_push(model, &grounding_, body, turn, &push) == GRRL_OK) {
             PushCommand command;
-            command.start_m = {push.start_m.x, push.start_m.y};
-            command.end_m = {push.end_m.x, push.end_m.y};
-            command.speed_m_s = push.speed_m_s;
-            command.force_limit_n = push.force_n;
-            command.travel_m = push.travel_m;
-            command.timeout_s = push.timeout_s;
-            if (world_.begin_push(command).empty())
-                while (world_.step_frame())
-                    observe(true);
+            command.start_m = {static_cast<double>(push.start_m.x),
+                               static_cast<double>(push.start_m.y)};
+            command.end_m = {static_cast<double>(push.end_m.x), static_cast<double>(push.end_m.y)};
+            command.speed_m_s = static_cast<double>(push.speed_m_s);
+            command.force_limit_n = static_cast<double>(push.force_n);
+            command.travel_m = static_cast<double>(push.travel_m);
+            command.timeout_s = static_cast<double>(push.timeout_s);
+            bench_.push(command);
         }
         rest();
     }
 
-    bool right(int which)
+    bool right(Eyes eyes) const
     {
         grrl_graph graph;
-        grrl_relational_state_of(grrl_perception_model(perception_[which].get()), 0.15f, &graph,
+        grrl_relational_state_of(grrl_perception_model(perception_[eyes].get()), large_m, &graph,
                                  nullptr, nullptr);
         return supervisor_.judge(graph).correct;
     }
 
-    std::string term(int which)
+    void print(Eyes eyes) const
     {
-        std::string text;
-        const grrl_model *m = grrl_perception_model(perception_[which].get());
-        for (int i = 0; i < m->n_bodies; i++)
-            text += " " + std::to_string(m->body[i].n_features);
-        for (int i = 0; i < m->n_joints; i++)
-            text += std::string(" ") + (m->joint[i].type == GRRL_REVOLUTE ? "R" : "P") +
-                    std::to_string(m->joint[i].a) + std::to_string(m->joint[i].b);
-        return text;
+        const grrl_model *model = grrl_perception_model(perception_[eyes].get());
+        (void)std::printf("  %s %d:", eyes == IDEAL ? "ideal" : "eye", right(eyes));
+        for (int i = 0; i < model->n_bodies; i++)
+            (void)std::printf(" %d", model->body[i].n_features);
+        for (int i = 0; i < model->n_joints; i++)
+            (void)std::printf(" %c%d-%d", model->joint[i].type == GRRL_REVOLUTE ? 'R' : 'P',
+                              model->joint[i].a, model->joint[i].b);
+        (void)std::printf("\n");
     }
+
+    const EyeBench &bench() const { return bench_; }
 
 private:
-    void observe(bool pushing)
-    {
-        world_.observe(frame_);
-        std::vector<int32_t> id;
-        std::vector<float> x, y;
-        for (const TrackedFeature &f : frame_.features) {
-            id.push_back(static_cast<int32_t>(f.id));
-            x.push_back(static_cast<float>(f.x_m));
-            y.push_back(static_cast<float>(f.y_m));
-        }
-        give(0, id, x, y, pushing);
-        grrl_track::View view;
-        view.picture = scene_.draw(world_.true_poses(), world_.finger_position());
-        view.motion = pushing ? grrl_track::Motion::PUSHING : grrl_track::Motion::REST;
-        if (world_.finger_position()) {
-            Vec2 tool = scene_.to_px(*world_.finger_position());
-            view.tool.push_back({static_cast<float>(tool.x), static_cast<float>(tool.y),
-                                 static_cast<float>(1000.0 * finger_radius_m / look_.mm_per_px)});
-        }
-        double start = cpu_s();
-        eye_.look(view);
-        double took = cpu_s() - start;
-        sum_.seconds += took;
-        sum_.slowest = std::max(sum_.slowest, took);
-        sum_.frames++;
-        id.clear(), x.clear(), y.clear();
-        for (const grrl_track::Point &p : eye_.points()) {
-            if (!p.visible)
-                continue;
-            Vec2 m = scene_.to_m({p.x, p.y});
-            id.push_back(p.id);
-            x.push_back(static_cast<float>(m.x));
-            y.push_back(static_cast<float>(m.y));
-            if (!pushing)
-                measure(p);
-        }
-        sum_.visible += static_cast<double>(id.size());
-        give(1, id, x, y, pushing);
-    }
-
-    void measure(const grrl_track::Point &p)
-    {
-        std::vector<Pose> poses = world_.true_poses();
-        Vec2 m = scene_.to_m({p.x, p.y});
-        auto known = home_.find(p.id);
-        if (known == home_.end()) {
-            Home home{-1, m};
-            for (size_t i = 0; i < poses.size(); i++) {
-                Vec2 local = transform(inverse(poses[i]), m);
-                if (!object_.links[i].fixed &&
-                    std::abs(local.x) <= object_.links[i].half_length_m + 0.003 &&
-                    std::abs(local.y) <= object_.links[i].half_width_m + 0.003)
-                    home = {static_cast<int>(i), local};
-            }
-            home_[p.id] = home;
-            return;
-        }
-        Vec2 truth =
-            known->second.link < 0
-                ? known->second.place
-                : transform(poses[static_cast<size_t>(known->second.link)], known->second.place);
-        sums_[p.id].first = sums_[p.id].first + (m - truth);
-        sums_[p.id].second++;
-    }
-
-    void give(int which, const std::vector<int32_t> &id, const std::vector<float> &x,
-              const std::vector<float> &y, bool pushing)
-    {
-        grrl_frame frame{static_cast<uint32_t>(id.size()), id.data(), x.data(), y.data()};
-        grrl_perception_observe(perception_[which].get(), &frame, pushing);
-    }
-
     void rest()
     {
-        sums_.clear();
-        for (int i = 0; i < rest_frames; i++) {
-            (void)world_.step_frame();
-            observe(false);
-        }
-        for (const auto &[id, sum] : sums_) {
-            double e = length((1.0 / sum.second) * sum.first) * 1000.0 / look_.mm_per_px;
-            sum_.error_px.push_back(e);
-            if (std::getenv("VERBOSE") && e > 0.3) {
-                const Home &h = home_[id];
-                std::printf("   id %d link %d at %.1f %.1f mm error %.2f px (%.2f %.2f) n %d\n", id,
-                            h.link, 1e3 * h.place.x, 1e3 * h.place.y, e,
-                            sum.first.x / sum.second * 1000 / look_.mm_per_px,
-                            sum.first.y / sum.second * 1000 / look_.mm_per_px, sum.second);
-            }
-        }
-        for (auto &p : perception_)
-            (void)!grrl_perception_update(p.get());
+        bench_.rest();
+        for (auto &perception : perception_)
+            (void)!grrl_perception_update(perception.get());
     }
 
-    ObjectSpec object_;
-    CameraLook look_;
-    World world_;
-    Scene scene_;
-    Sum &sum_;
+    void observe(bool pushing)
+    {
+        std::vector<int32_t> id[EYES];
+        std::vector<float> x[EYES];
+        std::vector<float> y[EYES];
+        auto add = [&](Eyes eyes, int32_t i, Vec2 m) {
+            id[eyes].push_back(i);
+            x[eyes].push_back(static_cast<float>(m.x));
+            y[eyes].push_back(static_cast<float>(m.y));
+        };
+        bench_.world().observe(frame_);
+        for (const TrackedFeature &f : frame_.features)
+            add(IDEAL, static_cast<int32_t>(f.id), {f.x_m, f.y_m});
+        for (const grrl_track::Point &p : bench_.points())
+            if (p.visible)
+                add(PIXELS, p.id,
+                    bench_.scene().to_m({static_cast<double>(p.x), static_cast<double>(p.y)}));
+        for (int e = 0; e < EYES; e++) {
+            grrl_frame frame{static_cast<uint32_t>(id[e].size()), id[e].data(), x[e].data(),
+                             y[e].data()};
+            grrl_perception_observe(perception_[e].get(), &frame, pushing);
+        }
+    }
+
+    EyeBench bench_;
     Supervisor supervisor_;
-    grrl_track::Eye eye_{grrl_track::EyeConfig{}};
-    std::unique_ptr<grrl_perception> perception_[2] = {
-        std::unique_ptr<grrl_perception>(new grrl_perception),
-        std::unique_ptr<grrl_perception>(new grrl_perception)};
+    std::unique_ptr<grrl_perception> perception_[EYES];
     grrl_grounding_config grounding_;
     grrl_random random_;
     Frame frame_;
-    std::map<int32_t, Home> home_;
-    std::map<int32_t, std::pair<Vec2, int>> sums_;
 };
 
-double share(std::vector<double> &values, double q)
+void add(const EyeBench &bench, Sum &sum)
 {
-    if (values.empty())
-        return 0.0;
-    size_t i = static_cast<size_t>(q * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(i), values.end());
-    return values[i];
+    sum.errors_px.insert(sum.errors_px.end(), bench.errors_px.begin(), bench.errors_px.end());
+    sum.seconds += bench.seconds;
+    sum.slowest_s = std::max(sum.slowest_s, bench.slowest_s);
+    sum.frames += bench.frames;
+    sum.visible += bench.visible;
+}
+
+void print(const char *object, int scenes, const Sum &sum)
+{
+    (void)std::printf("%s: %d scenes, %.1f points, %.2f ms a picture, the slowest %.1f\n", object,
+                      scenes, sum.visible / sum.frames, 1e3 * sum.seconds / sum.frames,
+                      1e3 * sum.slowest_s);
+    (void)std::printf("error at rest, px: median %.3f, p90 %.3f, p99 %.3f of %zu\n",
+                      eye_bench::quantile(sum.errors_px, 0.5),
+                      eye_bench::quantile(sum.errors_px, 0.9),
+                      eye_bench::quantile(sum.errors_px, 0.99), sum.errors_px.size());
+    for (int e = 0; e < EYES; e++) {
+        (void)std::printf("right, %s", e == IDEAL ? "ideal points:" : "the eye:     ");
+        for (int right : sum.right[e])
+            (void)std::printf(" %d", right);
+        (void)std::printf("\n");
+    }
 }
 
 } // namespace
@@ -264,29 +185,20 @@ int main(int argc, char **argv)
     int scenes = std::atoi(argv[3]);
     int pushes = std::atoi(argv[4]);
     Sum sum;
-    for (auto &r : sum.right)
-        r.assign(static_cast<size_t>(pushes), 0);
+    for (std::vector<int> &right : sum.right)
+        right.assign(static_cast<size_t>(pushes), 0);
     for (int s = 0; s < scenes; s++) {
-        Bench bench(*object.value, look, seed + static_cast<uint64_t>(s), sum);
+        Trial trial(*object.value, look, seed + static_cast<uint64_t>(s));
         for (int p = 0; p < pushes; p++) {
-            bench.push();
-            for (int w = 0; w < 2; w++)
-                sum.right[w][static_cast<size_t>(p)] += bench.right(w);
+            trial.push();
+            for (Eyes eyes : {IDEAL, PIXELS})
+                sum.right[eyes][static_cast<size_t>(p)] += trial.right(eyes);
         }
-        if (std::getenv("VERBOSE"))
-            std::printf("scene %d: ideal %d%s | eye %d%s\n", s, bench.right(0),
-                        bench.term(0).c_str(), bench.right(1), bench.term(1).c_str());
+        if (std::getenv("TRACK_SCENES_VERBOSE") != nullptr)
+            for (Eyes eyes : {IDEAL, PIXELS})
+                trial.print(eyes);
+        add(trial.bench(), sum);
     }
-    std::printf("%s: %d scenes, %.1f points, %.2f ms a picture (slowest %.1f)\n", argv[1], scenes,
-                sum.visible / sum.frames, 1e3 * sum.seconds / sum.frames, 1e3 * sum.slowest);
-    std::printf("error at rest, px: median %.3f, p90 %.3f, p99 %.3f (n %zu)\n",
-                share(sum.error_px, 0.5), share(sum.error_px, 0.9), share(sum.error_px, 0.99),
-                sum.error_px.size());
-    for (int w = 0; w < 2; w++) {
-        std::printf("right, %s:", w == 0 ? "ideal" : "eye  ");
-        for (int r : sum.right[w])
-            std::printf(" %d", r);
-        std::printf("\n");
-    }
+    print(argv[1], scenes, sum);
     return 0;
 }
