@@ -46,6 +46,18 @@ inline PushCommand push_across(const World &world, int link, bool other_side)
     return command;
 }
 
+/* A push at an end of a link, towards its other end. */
+inline PushCommand push_along(const World &world, int link, bool other_end)
+{
+    const Pose pose = world.true_poses()[static_cast<size_t>(link)];
+    double reach = world.object().links[static_cast<size_t>(link)].half_length_m + 0.03;
+    Vec2 along = direction(pose.angle + (other_end ? pi : 0.0));
+    PushCommand command;
+    command.start_m = pose.position - reach * along;
+    command.end_m = pose.position + reach * along;
+    return command;
+}
+
 class EyeBench
 {
 public:

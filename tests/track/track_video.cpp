@@ -89,7 +89,9 @@ int main(int argc, char **argv)
     film.rest(5);
     for (int i = 0; i < std::atoi(argv[3]); i++) {
         int link = random.below(links);
-        film.push(eye_bench::push_across(film.world(), link, random.below(2) != 0));
+        bool other = random.below(2) != 0;
+        film.push(random.below(2) != 0 ? eye_bench::push_across(film.world(), link, other)
+                                       : eye_bench::push_along(film.world(), link, other));
         film.rest(5);
     }
     (void)std::printf("%s: %d pictures\n", argv[1], film.pictures());
