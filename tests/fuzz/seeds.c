@@ -123,6 +123,14 @@ static void write_messages(void)
     write_message(5, "decision", grrl_wire_encode_decision(&decision, ALL, bytes, &why));
     write_message(6, "agent_status",
                   grrl_wire_encode_agent_status(&agent_status, ALL, bytes, &why));
+    uint8_t pixels[16 * 16] = {1, 2, 3};
+    const grrl_image_t image = {.session_id = 2,
+                                .seq = 1,
+                                .width = 16,
+                                .height = 16,
+                                .n_bytes = sizeof pixels,
+                                .data = pixels};
+    write_message(7, "image", grrl_wire_encode_image(&image, ALL, bytes, &why));
 }
 
 /* --- logs ------------------------------------------------------------------------------------- */

@@ -104,6 +104,7 @@ public:
                length(truth(id) - *finger) < finger_radius_m + 0.008;
     }
 
+    bool knows(int32_t id) const { return home_.count(id) != 0; }
     bool on_link(int32_t id) const { return home_.count(id) != 0 && home_.at(id).link >= 0; }
     World &world() { return world_; }
     Scene &scene() { return scene_; }

@@ -61,7 +61,7 @@ static void blur_noise_and_a_bent_lens_do_little(void **)
     std::vector<double> errors = errors_of("RPR", look, 7);
     std::printf("error at rest, px: median %.3f, p90 %.3f of %zu\n", quantile(errors, 0.5),
                 quantile(errors, 0.9), errors.size());
-    assert_true(errors.size() > 100);
+    assert_true(errors.size() > 60);
     assert_true(quantile(errors, 0.5) <= 0.15);
     assert_true(quantile(errors, 0.9) <= 0.5);
 }
@@ -83,7 +83,7 @@ static void what_the_finger_hid_gets_its_id_back(void **)
     ObjectSpec object = object_of("RPR");
     size_t hidden = 0;
     size_t regained = 0;
-    for (uint64_t seed = 1; seed <= 4; seed++) {
+    for (uint64_t seed = 1; seed <= 8; seed++) {
         EyeBench *bench = nullptr;
         std::set<int32_t> covered;
         std::set<int32_t> known;

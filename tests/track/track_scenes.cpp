@@ -28,7 +28,7 @@ using eye_bench::EyeBench;
 namespace
 {
 
-enum Eyes { IDEAL, PIXELS, EYES };
+enum Eyes { IDEAL, PIXELS, EXACT, EYES }; /* EXACT: the eye's points, where they truly are */
 constexpr uint64_t push_stream = 99;
 constexpr float large_m = 0.15f;
 
@@ -90,7 +90,11 @@ public:
     void print(Eyes eyes) const
     {
         const grrl_model *model = grrl_perception_model(perception_[eyes].get());
-        (void)std::printf("  %s %d:", eyes == IDEAL ? "ideal" : "eye", right(eyes));
+        (void)std::printf("  %s %d:",
+                          eyes == IDEAL    ? "ideal"
+                          : eyes == PIXELS ? "eye"
+                                           : "exact",
+                          right(eyes));
         for (int i = 0; i < model->n_bodies; i++)
             (void)std::printf(" %d", model->body[i].n_features);
         for (int i = 0; i < model->n_joints; i++)
@@ -123,9 +127,12 @@ private:
         for (const TrackedFeature &f : frame_.features)
             add(IDEAL, static_cast<int32_t>(f.id), {f.x_m, f.y_m});
         for (const grrl_track::Point &p : bench_.points())
-            if (p.visible)
-                add(PIXELS, p.id,
-                    bench_.scene().to_m({static_cast<double>(p.x), static_cast<double>(p.y)}));
+            if (p.visible) {
+                Vec2 seen =
+                    bench_.scene().to_m({static_cast<double>(p.x), static_cast<double>(p.y)});
+                add(PIXELS, p.id, seen);
+                add(EXACT, p.id, bench_.knows(p.id) ? bench_.truth(p.id) : seen);
+            }
         for (int e = 0; e < EYES; e++) {
             grrl_frame frame{static_cast<uint32_t>(id[e].size()), id[e].data(), x[e].data(),
                              y[e].data()};
@@ -160,7 +167,9 @@ void print(const char *object, int scenes, const Sum &sum)
                       eye_bench::quantile(sum.errors_px, 0.9),
                       eye_bench::quantile(sum.errors_px, 0.99), sum.errors_px.size());
     for (int e = 0; e < EYES; e++) {
-        (void)std::printf("right, %s", e == IDEAL ? "ideal points:" : "the eye:     ");
+        (void)std::printf("right, %s", e == IDEAL    ? "ideal points:     "
+                                       : e == PIXELS ? "the eye:          "
+                                                     : "the eye, no error:");
         for (int right : sum.right[e])
             (void)std::printf(" %d", right);
         (void)std::printf("\n");
@@ -191,11 +200,11 @@ int main(int argc, char **argv)
         Trial trial(*object.value, look, seed + static_cast<uint64_t>(s));
         for (int p = 0; p < pushes; p++) {
             trial.push();
-            for (Eyes eyes : {IDEAL, PIXELS})
+            for (Eyes eyes : {IDEAL, PIXELS, EXACT})
                 sum.right[eyes][static_cast<size_t>(p)] += trial.right(eyes);
         }
         if (std::getenv("TRACK_SCENES_VERBOSE") != nullptr)
-            for (Eyes eyes : {IDEAL, PIXELS})
+            for (Eyes eyes : {IDEAL, PIXELS, EXACT})
                 trial.print(eyes);
         add(trial.bench(), sum);
     }
