@@ -172,7 +172,7 @@ Scene::Shape Scene::shape_of(size_t link, const Pose &pose) const
 /* What light falls on the table, beside links and finger. */
 void Scene::shade(const std::vector<Shape> &shapes, std::optional<Vec2> finger_px)
 {
-    shadow_.setTo(0.0f);
+    shadow_.setTo(0.0);
     Vec2 offset{shadow_x_px, shadow_y_px};
     auto darken = [&](cv::Rect area, auto distance) {
         for (int row = area.y; row < area.y + area.height; row++)

@@ -104,6 +104,19 @@ public:
                length(truth(id) - *finger) < finger_radius_m + 0.008;
     }
 
+    /* Whether a link that is drawn later than this one covers a point. */
+    bool covered(int link, Vec2 m) const
+    {
+        std::vector<Pose> poses = world_.true_poses();
+        const std::vector<LinkSpec> &links = world_.object().links;
+        for (size_t i = static_cast<size_t>(link + 1); i < links.size(); i++) {
+            Rectangle shape{poses[i], links[i].half_length_m, links[i].half_width_m};
+            if (!links[i].fixed && distance(shape, m) <= 0.0)
+                return true;
+        }
+        return false;
+    }
+
     bool knows(int32_t id) const { return home_.count(id) != 0; }
     bool on_link(int32_t id) const { return home_.count(id) != 0 && home_.at(id).link >= 0; }
     World &world() { return world_; }

@@ -2,9 +2,10 @@
  * track_scenes OBJECT SEED SCENES PUSHES [LOOK]: how well the eye sees, and what perception makes
  * of it. docs/camera.md has its figures.
  *
- * In each scene random pushes, chosen by what is believed from ideal points; those and the points
- * of the eye, of the same pictures, go to a perception each. Prints in how many scenes each has
- * the right structure after each push, how far points are off at rest, and the time of a picture.
+ * In each scene random pushes, chosen by what is believed from ideal points. Four perceptions watch:
+ * ideal points, the simulator's own; those that no other link covers; what the eye makes of the
+ * pictures; and the eye's points without its error. Prints in how many scenes each has the right
+ * structure after each push, how far points are off at rest, and the processor time of a picture.
  */
 #include <cstdio>
 #include <cstdlib>
@@ -28,7 +29,11 @@ using eye_bench::EyeBench;
 namespace
 {
 
-enum Eyes { IDEAL, PIXELS, EXACT, EYES }; /* EXACT: the eye's points, where they truly are */
+/* Ideal points; those of them that no other link covers; the eye's; the eye's, where they truly
+ * are. */
+enum Eyes { IDEAL, UNCOVERED, PIXELS, EXACT, EYES };
+const char *const names[EYES] = {"ideal points", "ideal, uncovered", "the eye",
+                                 "the eye, no error"};
 constexpr uint64_t push_stream = 99;
 constexpr float large_m = 0.15f;
 
@@ -124,8 +129,11 @@ private:
             y[eyes].push_back(static_cast<float>(m.y));
         };
         bench_.world().observe(frame_);
-        for (const TrackedFeature &f : frame_.features)
+        for (const TrackedFeature &f : frame_.features) {
             add(IDEAL, static_cast<int32_t>(f.id), {f.x_m, f.y_m});
+            if (!bench_.covered(bench_.world().tracker().true_link(f.id), {f.x_m, f.y_m}))
+                add(UNCOVERED, static_cast<int32_t>(f.id), {f.x_m, f.y_m});
+        }
         for (const grrl_track::Point &p : bench_.points())
             if (p.visible) {
                 Vec2 seen =
@@ -167,9 +175,7 @@ void print(const char *object, int scenes, const Sum &sum)
                       eye_bench::quantile(sum.errors_px, 0.9),
                       eye_bench::quantile(sum.errors_px, 0.99), sum.errors_px.size());
     for (int e = 0; e < EYES; e++) {
-        (void)std::printf("right, %s", e == IDEAL    ? "ideal points:     "
-                                       : e == PIXELS ? "the eye:          "
-                                                     : "the eye, no error:");
+        (void)std::printf("right, %-18s", names[e]);
         for (int right : sum.right[e])
             (void)std::printf(" %d", right);
         (void)std::printf("\n");
@@ -200,11 +206,11 @@ int main(int argc, char **argv)
         Trial trial(*object.value, look, seed + static_cast<uint64_t>(s));
         for (int p = 0; p < pushes; p++) {
             trial.push();
-            for (Eyes eyes : {IDEAL, PIXELS, EXACT})
+            for (Eyes eyes : {IDEAL, UNCOVERED, PIXELS, EXACT})
                 sum.right[eyes][static_cast<size_t>(p)] += trial.right(eyes);
         }
         if (std::getenv("TRACK_SCENES_VERBOSE") != nullptr)
-            for (Eyes eyes : {IDEAL, PIXELS, EXACT})
+            for (Eyes eyes : {IDEAL, UNCOVERED, PIXELS, EXACT})
                 trial.print(eyes);
         add(trial.bench(), sum);
     }
