@@ -2,10 +2,11 @@
  * track_scenes OBJECT SEED SCENES PUSHES [LOOK]: how well the eye sees, and what perception makes
  * of it. docs/camera.md has its figures.
  *
- * In each scene random pushes, chosen by what is believed from ideal points. Four perceptions watch:
- * ideal points, the simulator's own; those that no other link covers; what the eye makes of the
- * pictures; and the eye's points without its error. Prints in how many scenes each has the right
- * structure after each push, how far points are off at rest, and the processor time of a picture.
+ * In each scene random pushes, chosen by what is believed from ideal points. Four perceptions
+ * watch: ideal points, the simulator's own; those that no other link covers; what the eye makes of
+ * the pictures; and the eye's points without its error. Prints in how many scenes each has the
+ * right structure after each push, how far points are off at rest, and the processor time of a
+ * picture.
  */
 #include <cstdio>
 #include <cstdlib>
