@@ -22,9 +22,9 @@ constexpr float least_share = 0.5f;
 constexpr float most_sd_px = 0.15f;
 constexpr float most_sparse_sd_px = 0.3f;
 constexpr float regained_correlation = 0.88f;
-constexpr float agree_px = 0.3f; /* of a neighbour's word, and more with its distance .. */
+constexpr float agree_px = 0.4f; /* of a neighbour's word, and more with its distance .. */
 constexpr float agree_rad = 0.012f;
-constexpr float consensus_px = 0.2f; /* .. and of all that agree */
+constexpr float consensus_px = 0.3f; /* .. and of all that agree */
 constexpr size_t least_agreeing = 2;
 constexpr size_t least_share_agreeing = 3; /* one of three: a shadow agrees with itself */
 constexpr float moved_px = 0.7f;
@@ -34,7 +34,7 @@ constexpr int least_still_frames = 4;
 constexpr int judging_frame = 8; /* of a rest */
 constexpr int birth_frame = 3;
 constexpr int most_doubts = 2;
-constexpr float least_kept = 0.5f;
+constexpr float least_kept = 0.4f;
 constexpr float tool_margin_px = Patch::half - 2.0f;
 
 } // namespace

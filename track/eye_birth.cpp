@@ -16,7 +16,7 @@ constexpr int corner_block = 9;
 constexpr int edge_px = Patch::half + 4;
 /* What the smaller eigenvalue of the gradients must be for a position within some 0.1 and 0.2
  * pixel, at one grey level of noise. */
-constexpr float strong_floor = 3.0f;
+constexpr float strong_floor = 5.0f;
 constexpr float weak_floor = 0.5f;
 constexpr size_t reference_rank = 20; /* of the corners, as the best: some are accidents */
 constexpr size_t most_neighbours = 8;
