@@ -18,10 +18,6 @@ enum option_id {
     OPT_STORE,
     OPT_EXPERIENCES,
     OPT_SEED,
-    OPT_ALPHA,
-    OPT_GAMMA,
-    OPT_BETA,
-    OPT_Z,
     OPT_NOISE,
     OPT_OBSERVE,
     OPT_TRACKER_TIMEOUT,
@@ -29,7 +25,8 @@ enum option_id {
     OPT_QUIET,
     OPT_EXPLAIN,
     OPT_HELP,
-    OPT_VERSION
+    OPT_VERSION,
+    OPT_PARAMETER /* and up: the parameters of all policies, one after another */
 };
 
 /* The one list of options: getopt's table and --help are both made from it. */
@@ -39,14 +36,10 @@ static const struct {
     const char *argument; /* NULL: it has none */
     const char *help;
 } table[] = {
-    {OPT_POLICY, "policy", "NAME", "how pushes are chosen: learn, paper or random (learn)"},
+    {OPT_POLICY, "policy", "NAME", "how pushes are chosen, see below (learn)"},
     {OPT_STORE, "store", "FILE", "load experiences from FILE and save them there after each trial"},
     {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 1000000 (1000)"},
     {OPT_SEED, "seed", "N", "seed of all random choices (1)"},
-    {OPT_ALPHA, "alpha", "X", "paper: learning rate, above 0 to 1 (0.3)"},
-    {OPT_GAMMA, "gamma", "X", "paper: discount of later rewards, 0 to below 1 (0.1)"},
-    {OPT_BETA, "beta", "X", "paper: a new action has probability exp(-beta phi) (2)"},
-    {OPT_Z, "z", "X", "paper: width of the bounds of Interval Estimation (0.25)"},
     {OPT_NOISE, "noise", "MM", "standard deviation of a tracked point, millimetres (0.7)"},
     {OPT_OBSERVE, "observe", NULL, "learn from another agent's pushes, live or from a log"},
     {OPT_TRACKER_TIMEOUT, "tracker-timeout", "S",
@@ -58,7 +51,49 @@ static const struct {
     {OPT_VERSION, "version", NULL, "print the version"},
 };
 
-enum { N_OPTIONS = sizeof table / sizeof table[0] };
+enum { N_OPTIONS = sizeof table / sizeof table[0], MOST_PARAMETERS = 32 };
+
+/* A parameter of a policy, and what the user gave for it. */
+struct given {
+    const struct grrl_policy_type *policy;
+    const struct grrl_parameter *parameter;
+    const char *text; /* NULL: not given */
+};
+
+static size_t list_parameters(struct given *given)
+{
+    size_t n = 0;
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++)
+        for (size_t i = 0; i < (*type)->n_parameters && n < MOST_PARAMETERS; i++)
+            given[n++] = (struct given){*type, &(*type)->parameters[i], NULL};
+    return n;
+}
+
+static float *value_of(const struct grrl_parameter *parameter, void *config)
+{
+    return (float *)(void *)((unsigned char *)config + parameter->offset);
+}
+
+static void print_policies(void)
+{
+    union {
+        max_align_t aligned;
+        unsigned char bytes[GRRL_POLICY_CONFIG_BYTES];
+    } config;
+    (void)printf("\nPolicies and their parameters:\n");
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++) {
+        (void)printf("  %-22s %s\n", (*type)->name, (*type)->text);
+        if ((*type)->config_default != NULL)
+            (*type)->config_default(config.bytes);
+        for (size_t i = 0; i < (*type)->n_parameters; i++) {
+            const struct grrl_parameter *parameter = &(*type)->parameters[i];
+            char left[40];
+            (void)snprintf(left, sizeof left, "--%s X", parameter->name);
+            (void)printf("    %-20s %s, %s (%g)\n", left, parameter->help, parameter->range,
+                         (double)*value_of(parameter, config.bytes));
+        }
+    }
+}
 
 static void print_help(void)
 {
@@ -72,6 +107,7 @@ static void print_help(void)
                        table[i].argument != NULL ? table[i].argument : "");
         (void)printf("  %-22s %s\n", left, table[i].help);
     }
+    print_policies();
     (void)printf("\nWithout --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
                  "Exit status: 0 all trials done, log read or stopped by a signal; 1 trouble;\n"
                  "2 wrong command line.\n");
@@ -93,16 +129,6 @@ static bool parse_float(const char *name, const char *text, const char *right, f
     return true;
 }
 
-/* A parameter of the policy; the library knows which values are in its range. */
-static bool parse_parameter(const char *name, const char *text, const char *right,
-                            struct grrl_policy_config *policy, float *value)
-{
-    const char *field = "";
-    if (!parse_float(name, text, right, value))
-        return false;
-    return grrl_policy_config_check(policy, &field) == GRRL_OK || bad(name, text, right);
-}
-
 static bool parse_unsigned(const char *name, const char *text, unsigned long long low,
                            unsigned long long high, const char *right, unsigned long long *value)
 {
@@ -116,20 +142,45 @@ static bool parse_unsigned(const char *name, const char *text, unsigned long lon
     return true;
 }
 
-static bool parse_policy(const char *text, enum grrl_policy_kind *kind)
+static bool parse_policy(const char *text, const struct grrl_policy_type **policy)
 {
-    static const struct {
-        const char *name;
-        enum grrl_policy_kind kind;
-    } names[] = {
-        {"learn", GRRL_POLICY_LEARN}, {"paper", GRRL_POLICY_PAPER}, {"random", GRRL_POLICY_RANDOM}};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i].name) == 0) {
-            *kind = names[i].kind;
-            return true;
-        }
+    char names[160] = "one of";
+    *policy = grrl_policy_find(text);
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++) {
+        size_t length = strlen(names);
+        (void)snprintf(names + length, sizeof names - length, " %s", (*type)->name);
     }
-    return bad("policy", text, "learn, paper or random");
+    return *policy != NULL || bad("policy", text, names);
+}
+
+/* Makes the policy's configuration from what was given. */
+static bool configure(const struct given *given, size_t n, struct grrl_agent_options *options)
+{
+    static union {
+        max_align_t aligned;
+        unsigned char bytes[GRRL_POLICY_CONFIG_BYTES];
+    } config;
+    const struct grrl_policy_type *policy = options->policy;
+    if (policy->config_default != NULL) {
+        policy->config_default(config.bytes);
+        options->policy_config = config.bytes;
+    }
+    for (size_t i = 0; i < n; i++) {
+        const struct grrl_parameter *parameter = given[i].parameter;
+        if (given[i].text == NULL)
+            continue;
+        if (given[i].policy != policy) {
+            (void)fprintf(stderr, "grrl-agent: --%s goes with --policy %s\n", parameter->name,
+                          given[i].policy->name);
+            return false;
+        }
+        if (!parse_float(parameter->name, given[i].text, parameter->range,
+                         value_of(parameter, config.bytes)))
+            return false;
+        if (policy->config_check(config.bytes, NULL) != GRRL_OK)
+            return bad(parameter->name, given[i].text, parameter->range);
+    }
+    return true;
 }
 
 static bool parse_noise(const char *text, float *noise_m)
@@ -157,12 +208,11 @@ static bool parse_timeout(const char *text, double *seconds)
 
 static bool take(enum option_id id, const char *text, struct grrl_agent_options *options)
 {
-    struct grrl_policy_config *policy = &options->learner.policy;
     unsigned long long n = 0;
     bool good = true;
     switch (id) {
     case OPT_POLICY:
-        return parse_policy(text, &policy->kind);
+        return parse_policy(text, &options->policy);
     case OPT_STORE:
         options->store = text;
         return true;
@@ -174,14 +224,6 @@ static bool take(enum option_id id, const char *text, struct grrl_agent_options 
         good = parse_unsigned("seed", text, 0, UINT64_MAX, "a number from 0", &n);
         options->learner.seed = n;
         return good;
-    case OPT_ALPHA:
-        return parse_parameter("alpha", text, "a number above 0 to 1", policy, &policy->alpha);
-    case OPT_GAMMA:
-        return parse_parameter("gamma", text, "a number from 0 to below 1", policy, &policy->gamma);
-    case OPT_BETA:
-        return parse_parameter("beta", text, "a number from 0 to 1000", policy, &policy->beta);
-    case OPT_Z:
-        return parse_parameter("z", text, "a number from 0 to 1000", policy, &policy->z);
     case OPT_NOISE:
         return parse_noise(text, &options->learner.perception.noise_m);
     case OPT_OBSERVE:
@@ -209,27 +251,40 @@ static bool consistent(const struct grrl_agent_options *options)
         (void)fprintf(stderr, "grrl-agent: --quiet and --explain contradict each other\n");
         return false;
     }
+    if (options->store != NULL && options->policy->entries == NULL) {
+        (void)fprintf(stderr, "grrl-agent: --store: the policy %s does not learn\n",
+                      options->policy->name);
+        return false;
+    }
     return true;
 }
 
-static void make_getopt_table(struct option *options)
+static void make_getopt_table(const struct given *given, size_t n, struct option *options)
 {
-    memset(options, 0, (N_OPTIONS + 1) * sizeof *options);
+    memset(options, 0, (N_OPTIONS + n + 1) * sizeof *options);
     for (size_t i = 0; i < N_OPTIONS; i++) {
         options[i].name = table[i].name;
         options[i].has_arg = table[i].argument != NULL ? required_argument : no_argument;
         options[i].val = (int)table[i].id;
+    }
+    for (size_t i = 0; i < n; i++) {
+        options[N_OPTIONS + i].name = given[i].parameter->name;
+        options[N_OPTIONS + i].has_arg = required_argument;
+        options[N_OPTIONS + i].val = OPT_PARAMETER + (int)i;
     }
 }
 
 enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                                                   struct grrl_agent_options *options)
 {
-    struct option getopt_table[N_OPTIONS + 1];
-    make_getopt_table(getopt_table);
+    struct given given[MOST_PARAMETERS];
+    size_t n = list_parameters(given);
+    struct option getopt_table[N_OPTIONS + MOST_PARAMETERS + 1];
+    make_getopt_table(given, n, getopt_table);
     memset(options, 0, sizeof *options);
     grrl_learner_config_default(&options->learner);
     options->learner.seed = 1;
+    options->policy = grrl_policies[0];
     options->experiences = 1000;
     int id;
     while ((id = getopt_long(argc, argv, "", getopt_table, NULL)) != -1) {
@@ -245,7 +300,9 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
             (void)fprintf(stderr, "Try grrl-agent --help\n");
             return GRRL_OPTIONS_BAD;
         }
-        if (!take((enum option_id)id, optarg, options))
+        if (id >= OPT_PARAMETER)
+            given[id - OPT_PARAMETER].text = optarg;
+        else if (!take((enum option_id)id, optarg, options))
             return GRRL_OPTIONS_BAD;
     }
     if (optind < argc) {
@@ -253,5 +310,6 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                       argv[optind]);
         return GRRL_OPTIONS_BAD;
     }
-    return consistent(options) ? GRRL_OPTIONS_RUN : GRRL_OPTIONS_BAD;
+    return configure(given, n, options) && consistent(options) ? GRRL_OPTIONS_RUN
+                                                               : GRRL_OPTIONS_BAD;
 }

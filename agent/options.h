@@ -6,9 +6,12 @@
 #include <stdint.h>
 
 #include "grrl/learner/learner.h"
+#include "grrl/policies.h"
 
 struct grrl_agent_options {
     struct grrl_learner_config learner;
+    const struct grrl_policy_type *policy;
+    void *policy_config; /* of the policy, or NULL: it has none */
     const char *store;   /* NULL: experiences are not kept */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;

@@ -4,9 +4,11 @@
 
 extern "C" {
 #include "agent.h"
+#include "grrl/learner/cases/learn_policy.h"
 #include "grrl/learner/learner.h"
-#include "grrl/learner/relational_q/experience.h"
+#include "grrl/learner/relational_q/paper_policy.h"
 #include "grrl/perception/perception.h"
+#include "grrl/policies.h"
 }
 
 #endif

@@ -61,7 +61,7 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
         const Curve &curve = plan.curves[figure.curves[i]];
         std::string color = curve.policy->color;
         /* In a transfer, dashed is without experience. */
-        bool dashed = transfer && curve.policy->learns && curve.pretrain.empty();
+        bool dashed = transfer && curve.policy->learns() && curve.pretrain.empty();
         parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
                         "' notitle");
         parts.push_back(index(i) + " using 1:3 with lines lw 2.5 dt " + (dashed ? "2" : "1") +

@@ -20,7 +20,7 @@ static struct bridge_line line;
 struct run {
     const char *serial;
     const char *lcm_url;
-    enum grrl_policy_kind policy;
+    struct grrl_policy_type policy; /* its name alone */
     uint64_t seed;
     bool quiet;
     int32_t trials; /* that count */
@@ -34,7 +34,7 @@ static const char help[] =
     "  --serial PATH   Unix socket (qemu-system-arm -chardev socket,path=PATH,server=on) or "
     "serial\n"
     "                  device with the controller behind it; needed\n"
-    "  --policy NAME   how the controller chooses: learn, paper or random (learn)\n"
+    "  --policy NAME   how the controller chooses, a policy of its image (learn)\n"
     "  --seed N        seed of all random choices (1)\n"
     "  --lcm-url URL   LCM provider\n"
     "  --quiet         print errors only\n"
@@ -63,18 +63,12 @@ static int wrong(const char *option, const char *text, const char *right)
     return WRONG_USAGE;
 }
 
+/* Which policies there are, the controller knows. */
 static int take_policy(struct run *run, const char *text)
 {
-    static const char *const names[] = {[GRRL_POLICY_LEARN] = "learn",
-                                        [GRRL_POLICY_PAPER] = "paper",
-                                        [GRRL_POLICY_RANDOM] = "random"};
-    for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i]) == 0) {
-            run->policy = (enum grrl_policy_kind)i;
-            return GO_ON;
-        }
-    }
-    return wrong("policy", text, "learn, paper or random");
+    run->policy.name = text;
+    bool fits = text[0] != '\0' && strlen(text) < GRRL_POLICY_NAME_BYTES;
+    return fits ? GO_ON : wrong("policy", text, "a name of 1 to 15 characters");
 }
 
 static int take_seed(struct run *run, const char *text)
@@ -117,7 +111,7 @@ static int take(struct run *run, int id)
 /* GO_ON, or the exit status. */
 static int parse(int argc, char **argv, struct run *run)
 {
-    *run = (struct run){.policy = GRRL_POLICY_LEARN, .seed = 1};
+    *run = (struct run){.policy = {.name = "learn"}, .seed = 1};
     int id;
     while ((id = getopt_long(argc, argv, "", options, NULL)) != -1) {
         int status = take(run, id);
@@ -150,10 +144,9 @@ static void on_event(void *context, const struct grrl_agent_event *event)
         run->pushes += event->pushes;
     }
     if (!run->quiet)
-        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u %s\n", event->trial_id,
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u entries\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage_of(&agent.learner).n,
-                     run->policy == GRRL_POLICY_LEARN ? "cases" : "experiences");
+                     (unsigned)grrl_learner_usage(&agent.learner).n);
     (void)fflush(stdout);
 }
 
@@ -183,9 +176,9 @@ static void report(const struct run *run, const struct bridge_result *result)
                  " requests sent again, %" PRIu32 " answers too many\n",
                  counts->requests, counts->bytes_out, counts->bytes_in, counts->damaged_out,
                  counts->damaged_in, counts->resent, counts->late);
-    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
-                 "\nexperiences %016" PRIx64 "\n",
-                 result->models, result->decisions, result->updates, result->experiences);
+    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nupdates %016" PRIx64
+                 "\nstore %016" PRIx64 "\n",
+                 result->models, result->decisions, result->updates, result->store);
 }
 
 static bool run_bridge(struct run *run, lcm_t *lcm)
@@ -197,7 +190,7 @@ static bool run_bridge(struct run *run, lcm_t *lcm)
         .context = run,
     };
     config.learner.seed = run->seed;
-    config.learner.policy.kind = run->policy;
+    config.policy.type = &run->policy;
     if (!bridge_line_open(&line, run->serial, SOCKET_MS))
         return false;
     bridge_learner_use(&line);

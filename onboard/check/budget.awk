@@ -31,7 +31,7 @@ END {
     }
     # Choose and learn together: full stores and states of all links, which a run does not come to.
     row("a decision at full capacity, most", worst["learn"], worst["paper"], 10000000)
-    row("experiences in use at the end", used["learn", "experiences"], used["paper", "experiences"],
+    row("entries in use at the end", used["learn", "entries"], used["paper", "entries"],
         256)
     if (over != "")
         print "over the limit:" over > "/dev/stderr"

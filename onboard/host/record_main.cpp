@@ -67,7 +67,7 @@ void expect(Run &run)
     write(run);
 }
 
-void open(Run &run, uint64_t seed, grrl_policy_kind policy)
+void open(Run &run, uint64_t seed, const char *policy)
 {
     onboard_controller_init(run.controller.get(), nullptr);
     onboard_put_open(&run.packet, seed, policy);
@@ -211,7 +211,7 @@ int main(int argc, char **argv)
         (void)std::fprintf(stderr, "grrl-record: %s\n", why.c_str());
         return 1;
     }
-    open(run, seed, policy == "learn" ? GRRL_POLICY_LEARN : GRRL_POLICY_PAPER);
+    open(run, seed, policy.c_str());
     (void)std::printf("pushes");
     for (uint32_t i = 1; i <= trials && !run.failed; i++)
         (void)std::printf(" %d", trial(run, *object.value, seed, i));

@@ -49,8 +49,8 @@ int main(int argc, char **argv)
                       " of the run): %s\n",
                       progress.packets, progress.trials, progress.pushes, grrl_status_text(status));
     }
-    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
-                 "\nexperiences %016" PRIx64 "\n",
+    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nupdates %016" PRIx64
+                 "\nstore %016" PRIx64 "\n",
                  controller.hashes.models, controller.hashes.decisions, controller.hashes.updates,
                  controller.store_hash);
     return status == GRRL_OK ? 0 : 1;

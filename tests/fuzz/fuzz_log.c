@@ -11,14 +11,13 @@
 #include "agent.h"
 #include "fuzz.h"
 #include "log_check.h"
+#include "policy_memory.h"
 #include "tracks.h"
 
 enum { CAPACITY = 16, PATH_BYTES = 64 };
 
 static struct grrl_agent agent;
-static struct grrl_case cases[CAPACITY];
-static struct grrl_experience_state states[CAPACITY];
-static struct grrl_experience experiences[CAPACITY];
+static POLICY_MEMORY(CAPACITY) memory;
 static lcm_t *lcm;
 
 static int64_t now_us(void *context)
@@ -48,8 +47,8 @@ static void start_observer(void)
 {
     struct grrl_agent_config config = {.session_id = 1, .observe = true, .now_us = now_us};
     grrl_learner_config_default(&config.learner);
-    config.memory =
-        (struct grrl_learner_memory){cases, CAPACITY, states, CAPACITY, experiences, CAPACITY};
+    REQUIRE(grrl_policy_make(&grrl_policy_learn, memory.bytes, sizeof memory.bytes, CAPACITY, NULL,
+                             &config.policy) == GRRL_OK);
     if (lcm == NULL)
         lcm = lcm_create("memq://");
     REQUIRE(lcm != NULL && grrl_agent_init(&agent, &config, lcm) == GRRL_OK);

@@ -1,3 +1,4 @@
+/* The policy paper: phi, Interval Estimation, bounds, on a store made by hand. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -7,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "grrl/learner/policy.h"
+#include "grrl/learner/relational_q/paper_policy.h"
 
 #define SEED UINT64_C(20080629)
 
@@ -19,7 +20,7 @@ struct fixture {
     struct grrl_experience_state states[1];
     struct grrl_experience experiences[ACTIONS];
     struct grrl_recall recall;
-    struct grrl_policy_config config;
+    struct grrl_paper_config config;
     struct grrl_random random;
 };
 
@@ -37,7 +38,7 @@ static int set_up(void **state)
     (void)state;
     memset(&f, 0, sizeof f);
     grrl_experience_init(&f.store, f.states, 1, f.experiences, ACTIONS);
-    grrl_policy_config_default(&f.config);
+    grrl_paper_config_default(&f.config);
     grrl_random_init(&f.random, SEED, 1);
     f.recall.n_links = LINKS;
     for (int link = 0; link < GRRL_MAX_LINKS; link++)
@@ -48,7 +49,7 @@ static int set_up(void **state)
 
 static unsigned choose(struct grrl_choice *choice)
 {
-    grrl_policy_choose(&f.config, &f.store, &f.recall, &f.random, choice);
+    grrl_paper_choose(&f.config, &f.store, &f.recall, &f.random, choice);
     assert_true(choice->link < LINKS && choice->direction < GRRL_DIRECTIONS);
     return choice->link * (unsigned)GRRL_DIRECTIONS + choice->direction;
 }
@@ -72,21 +73,6 @@ static void check_uniform(const unsigned *count, uint32_t wanted)
     }
 }
 
-static void the_random_policy_is_uniform(void **state)
-{
-    (void)state;
-    print_message("seed %llu\n", (unsigned long long)SEED);
-    f.config.kind = GRRL_POLICY_RANDOM;
-    know(3, 100.0f, 0.0f, 5);
-    unsigned count[ACTIONS] = {0};
-    for (int i = 0; i < DRAWS; i++) {
-        struct grrl_choice choice;
-        count[choose(&choice)]++;
-        assert_int_equal(choice.reason, GRRL_CHOICE_RANDOM);
-    }
-    check_uniform(count, (1u << ACTIONS) - 1u);
-}
-
 static void exploration_follows_phi(void **state)
 {
     (void)state;
@@ -102,10 +88,10 @@ static void exploration_follows_phi(void **state)
             if (choice.reason == GRRL_CHOICE_EXPLORE) {
                 explored++;
                 count[action]++;
-                assert_int_equal(choice.from.experience, GRRL_NO_EXPERIENCE);
+                assert_int_equal(choice.source.kind, GRRL_SOURCE_NONE);
             } else {
                 assert_int_equal(choice.reason, GRRL_CHOICE_EXPLOIT);
-                assert_int_equal(choice.from.experience, action);
+                assert_int_equal(choice.source.index, action);
             }
         }
         double share = n < ACTIONS ? exp(-2.0 * n / ACTIONS) : 0.0;
@@ -130,8 +116,9 @@ static void the_highest_upper_bound_wins(void **state)
     struct grrl_choice choice;
     assert_int_equal(choose(&choice), 7);
     assert_int_equal(choice.reason, GRRL_CHOICE_EXPLOIT);
-    assert_int_equal(choice.from.experience, 7);
-    assert_int_equal(choice.from.distance, 3);
+    assert_int_equal(choice.source.index, 7);
+    assert_int_equal(choice.source.kind, GRRL_SOURCE_SUBSTRUCTURE);
+    assert_int_equal(choice.source.distance, 3);
     assert_true(choice.value == 0.9f && fabsf(choice.upper - 1.15f) < 1e-6f &&
                 fabsf(choice.lower - 0.65f) < 1e-6f && choice.phi == 1.0f);
     f.config.z = 0.0f;
@@ -162,40 +149,40 @@ static void bounds_shrink_with_the_targets_met(void **state)
     float lower, upper;
     f.config.z = 2.0f;
     f.config.prior_sd = 3.0f;
-    grrl_policy_bounds(&f.config, &q, &lower, &upper);
+    grrl_paper_bounds(&f.config, &q, &lower, &upper);
     assert_true(fabsf(upper - 8.0f) < 1e-5f && fabsf(lower + 4.0f) < 1e-5f);
     q.n = 4;
     q.deviations = 27.0f; /* (27 + 9) / 4 = 9: sd 3, over 2 */
-    grrl_policy_bounds(&f.config, &q, &lower, &upper);
+    grrl_paper_bounds(&f.config, &q, &lower, &upper);
     assert_true(fabsf(upper - 5.0f) < 1e-5f && fabsf(lower + 1.0f) < 1e-5f);
 }
 
 static void the_best_value_is_that_of_known_actions(void **state)
 {
     (void)state;
-    assert_true(grrl_policy_best_value(&f.store, &f.recall) == 0.0f);
+    assert_true(grrl_paper_best_value(&f.store, &f.recall) == 0.0f);
     know(5, -2.0f, 0.0f, 1);
-    assert_true(grrl_policy_best_value(&f.store, &f.recall) == -2.0f);
+    assert_true(grrl_paper_best_value(&f.store, &f.recall) == -2.0f);
     know(8, 1.5f, 0.0f, 1);
-    assert_true(grrl_policy_best_value(&f.store, &f.recall) == 1.5f);
+    assert_true(grrl_paper_best_value(&f.store, &f.recall) == 1.5f);
 }
 
 static void check_refused(const char *name)
 {
     const char *field = NULL;
-    assert_int_equal(grrl_policy_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_paper_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
     assert_string_equal(field, name);
-    assert_int_equal(grrl_policy_config_check(&f.config, NULL), GRRL_ERR_ARGUMENT);
-    grrl_policy_config_default(&f.config);
+    assert_int_equal(grrl_paper_config_check(&f.config, NULL), GRRL_ERR_ARGUMENT);
+    grrl_paper_config_default(&f.config);
 }
 
 static void a_parameter_out_of_range_is_named(void **state)
 {
     (void)state;
     const char *field = NULL;
-    assert_int_equal(grrl_policy_config_check(&f.config, &field), GRRL_OK);
+    assert_int_equal(grrl_paper_config_check(&f.config, &field), GRRL_OK);
     assert_null(field);
-    struct grrl_policy_config *c = &f.config;
+    struct grrl_paper_config *c = &f.config;
     const struct {
         const char *name;
         float *value;
@@ -204,16 +191,13 @@ static void a_parameter_out_of_range_is_named(void **state)
                   {"gamma", &c->gamma, {-0.1f, 1.0f, INFINITY, NAN}},
                   {"beta", &c->beta, {-0.1f, 1e9f, INFINITY, NAN}},
                   {"z", &c->z, {-0.1f, 1e9f, INFINITY, NAN}},
-                  {"prior_sd", &c->prior_sd, {-0.1f, 1e9f, INFINITY, NAN}},
-                  {"trial_reward", &c->trial_reward, {-0.1f, 1e9f, INFINITY, NAN}}};
+                  {"prior_sd", &c->prior_sd, {-0.1f, 1e9f, INFINITY, NAN}}};
     for (unsigned i = 0; i < sizeof floats / sizeof floats[0]; i++) {
         for (unsigned k = 0; k < 4; k++) {
             *floats[i].value = floats[i].wrong[k];
             check_refused(floats[i].name);
         }
     }
-    c->kind = (enum grrl_policy_kind)7;
-    check_refused("kind");
     c->recall.deepest = (enum grrl_recall_level)3;
     check_refused("recall.deepest");
     c->recall.budget = 0;
@@ -227,7 +211,6 @@ static void a_parameter_out_of_range_is_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(the_random_policy_is_uniform, set_up),
         cmocka_unit_test_setup(exploration_follows_phi, set_up),
         cmocka_unit_test_setup(the_highest_upper_bound_wins, set_up),
         cmocka_unit_test_setup(ties_are_broken_at_random, set_up),
