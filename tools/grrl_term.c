@@ -41,7 +41,8 @@ static const char help[] =
     "             the links of A with those of B in the first mapping, --all: in every one\n"
     "\n"
     "TERM is a term or - for standard input:\n"
-    "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by name, background\n"
+    "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by number, background\n"
+    "  blade1  L(s, blade1)         links by any other name; the last word in L(..) is the name\n"
     "  R(x, y)  P(x, y)  D(x, y)    revolute, prismatic, disconnected\n"
     "  x & y                        and\n"
     "  A(x, 45)                     an action: push link x from 45 degrees\n"
@@ -157,11 +158,8 @@ static int write_term(grrl_term term)
 
 static void write_name(struct grrl_name name)
 {
-    static const char letters[] = {'?', 'l', 'f', 'v'};
-    if (name.kind == GRRL_NAME_BACKGROUND)
-        fputs("lb", stdout);
-    else
-        printf("%c%u", letters[name.kind], (unsigned)name.number);
+    char text[GRRL_NAME_BYTES];
+    fputs(grrl_term_name_text(&store, name, text), stdout);
 }
 
 /* Each property with a space before it, up to the last that is there. */
@@ -188,12 +186,20 @@ static int run_parse(const struct options *options)
     return read_term(options->terms[0], &term) ? write_term(term) : EXIT_NO;
 }
 
+/* In quotes, as a link may be called node or graph. */
+static void write_dot_name(struct grrl_name name)
+{
+    putchar('"');
+    write_name(name);
+    putchar('"');
+}
+
 static void write_dot(const struct structure *s)
 {
     puts("graph structure {");
     for (uint8_t i = 0; i < s->graph.n; i++) {
         fputs("  ", stdout);
-        write_name(s->names[i]);
+        write_dot_name(s->names[i]);
         fputs(" [label=\"", stdout);
         write_name(s->names[i]);
         write_properties(s->graph.label[i]);
@@ -201,9 +207,9 @@ static void write_dot(const struct structure *s)
     }
     for (uint8_t i = 0; i < s->n_edges; i++) {
         fputs("  ", stdout);
-        write_name(s->names[s->edges[i].a]);
+        write_dot_name(s->names[s->edges[i].a]);
         fputs(" -- ", stdout);
-        write_name(s->names[s->edges[i].b]);
+        write_dot_name(s->names[s->edges[i].b]);
         printf(" [label=\"%c\"];\n", joint_letter(&s->edges[i]));
     }
     puts("}");

@@ -332,6 +332,7 @@ int main(int argc, char **argv)
     write_text("csv", "pixels", "point,frame,y_px,x_px,extra\r\n7,-3, 1.5 ,2,z\r\n");
     write_text("term", "chain", "D(lb, R(L(s, f1), P(L(l, f2), L(_, f3))))");
     write_text("term", "loop", "R(l1, R(l5, R(l4, R(l3, R(l2, l1))))) & P(v1, L(v2, l9))");
+    write_text("term", "names", "D(lb, R(L(s, blade1), P(s, L(l, R)))) & Tip & L(l)");
     write_text("term", "action", "A(f3, 45)");
     write_text("bus", "quiet", "\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3");
     write_text("bus", "repeats",

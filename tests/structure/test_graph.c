@@ -1,5 +1,7 @@
 #include "support.h"
 
+#include "grrl/structure/canonical.h"
+
 enum { N_NODES = 12 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS };
 
 struct fixture {
@@ -75,6 +77,8 @@ static void test_equivalent_terms(void **state)
         {"R(l1, L(s, red, l2)) & L(l, l1)", "R(L(l, l1), l2) & L(s, red, l2) & l2"},
         {"L(_, red, l1) & lb", "D(lb, L(_, red, l1))"},
         {"R(lb, l1)", "D(lb, R(l1, lb))"},
+        {"D(lb, R(L(s, l), R(s, P)))", "R(l, s) & R(s, P) & L(s, l)"},
+        {"R(R, L(l, R1)) & P(R1, lb)", "P(lb, R(L(l, R1), R))"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -119,6 +123,9 @@ static void test_rejected_terms(void **state)
         {"A(l1, 45)", "an action is no structure"},
         {"L(v1, l1)", "link l1 has a variable for a property"},
         {"R(l1, l1)", "link l1 is joined to itself"},
+        {"R(blade1, tip, blade1)", "link blade1 is joined to itself"},
+        {"R(blade1, R(tip, blade1))", "link blade1 is joined twice to tip"},
+        {"R(L(s, tip), l2) & L(l, tip)", "link tip is given two sets of properties"},
         {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
         {"R(l1, R(l1, l2))", "link l1 is joined to itself"},
         {"R(l1, l2) & P(l2, l1)", "link l2 is joined twice to l1"},
@@ -266,6 +273,39 @@ static void test_order_of_discovery(void **state)
     }
 }
 
+/* Names that are identifiers keep their vertices, and neither they nor how many there are change
+ * the labels and the canonical form. */
+static void test_identifiers(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct structure plain =
+        read_structure(store, support_parse(store, "R(l1, P(L(s, wet, l2), L(red, l3)))"));
+    grrl_term_store_init(store, ((struct fixture *)*state)->nodes, N_NODES);
+    struct structure named =
+        read_structure(store, support_parse(store, "R(wet, P(L(s, wet, red), L(red, Tip)))"));
+    assert_true(grrl_graph_equal(&plain.graph, &named.graph, GRRL_ALL_PROPERTIES));
+    struct grrl_canonical a;
+    struct grrl_canonical b;
+    assert_int_equal(grrl_canonical_of(&plain.graph, GRRL_ALL_PROPERTIES, 10000, &a), GRRL_OK);
+    assert_int_equal(grrl_canonical_of(&named.graph, GRRL_ALL_PROPERTIES, 10000, &b), GRRL_OK);
+    assert_int_equal(a.hash, b.hash);
+    static const char *const words[] = {"wet", "red", "Tip"};
+    for (uint8_t i = 0; i < 3; i++) {
+        char text[GRRL_NAME_BYTES];
+        assert_int_equal(named.names[i].kind, GRRL_NAME_SYMBOL);
+        assert_string_equal(grrl_term_name_text(store, named.names[i], text), words[i]);
+    }
+    grrl_term term;
+    assert_int_equal(grrl_graph_to_term(store, &named.graph, named.names, named.edges,
+                                        named.n_edges, true, &term),
+                     GRRL_OK);
+    support_assert_prints(store, term, "D(lb, R(wet, P(L(s, wet, red), L(red, Tip))))");
+    named.names[2].number = 4; /* not known to the store */
+    assert_int_equal(grrl_graph_to_term(store, &named.graph, named.names, named.edges,
+                                        named.n_edges, true, &term),
+                     GRRL_ERR_ARGUMENT);
+}
+
 /* Without an order of discovery a chain or loop becomes one nested relation. */
 static void test_own_order(void **state)
 {
@@ -329,6 +369,18 @@ static void test_to_term_checks(void **state)
     }
 }
 
+/* A name for link k that no other k has: f3 or Link_3. */
+static struct grrl_name random_name(struct grrl_term_store *store, struct grrl_random *random,
+                                    uint8_t k)
+{
+    struct grrl_name name = {GRRL_NAME_FEATURES, k};
+    char word[GRRL_SYMBOL_BYTES];
+    int length = snprintf(word, sizeof word, "Link_%u", (unsigned)k);
+    if (grrl_random_below(random, 2) == 0)
+        assert_int_equal(grrl_term_intern_name(store, word, (size_t)length, &name), GRRL_OK);
+    return name;
+}
+
 /* Every structure survives being written as a term and read again, and its first joint is the most
  * deeply nested one as long as the term has no conjunction. */
 static void test_random_round_trips(void **state)
@@ -343,7 +395,7 @@ static void test_random_round_trips(void **state)
         s.graph = support_graph(&random, n, 1 + grrl_random_below(&random, 8),
                                 n > 1 ? grrl_random_below(&random, GRRL_MAX_JOINTS - n) : 0, 2);
         for (uint8_t k = 0; k < n; k++)
-            s.names[k] = (struct grrl_name){GRRL_NAME_FEATURES, (uint16_t)(100 + k)};
+            s.names[k] = random_name(store, &random, k);
         for (uint8_t b = 0; b < n; b++)
             for (uint8_t a = 0; a < b; a++)
                 if (grrl_graph_joint(&s.graph, a, b) != GRRL_NO_JOINT)
@@ -422,6 +474,7 @@ int main(void)
         cmocka_unit_test_setup(test_full, setup),
         cmocka_unit_test_setup(test_joints, setup),
         cmocka_unit_test_setup(test_order_of_discovery, setup),
+        cmocka_unit_test_setup(test_identifiers, setup),
         cmocka_unit_test_setup(test_own_order, setup),
         cmocka_unit_test_setup(test_to_term_checks, setup),
         cmocka_unit_test_setup(test_random_round_trips, setup),
