@@ -11,6 +11,8 @@
 
 #include "packet.h"
 
+GRRL_API_BEGIN
+
 /* Nodes and characters for the believed structure as a term. */
 enum { ONBOARD_TERM_NODES = 128, ONBOARD_TERM_BYTES = 1024 };
 
@@ -64,5 +66,7 @@ void onboard_controller_init(struct onboard_controller *controller, uint32_t (*c
  */
 GRRL_MUST_USE enum grrl_status onboard_controller_take(struct onboard_controller *controller,
                                                        struct onboard_packet *packet);
+
+GRRL_API_END
 
 #endif

@@ -26,6 +26,8 @@
 
 #include "grrl/learner/learner.h"
 
+GRRL_API_BEGIN
+
 /* How many cases and how many experiences a controller remembers, and states these are made in; a
  * state for each is the most that can be needed. */
 #ifndef ONBOARD_EXPERIENCES
@@ -108,5 +110,7 @@ bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
 bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
 bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
                         struct grrl_learner_usage *usage);
+
+GRRL_API_END
 
 #endif

@@ -6,12 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
+#include "node.hpp"
 #include "store_file.h"
-}
 
 using namespace grrl_sim;
 

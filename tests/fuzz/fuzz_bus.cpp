@@ -8,12 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
 #include "fuzz.h"
-}
+#include "node.hpp"
 
 using namespace grrl_sim;
 
