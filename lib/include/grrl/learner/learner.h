@@ -30,6 +30,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_learner_init GRRL_SIZED(grrl_learner_init)
+
 /* Memory for what is learned, the caller's. What the policy does not use may be NULL and 0. */
 struct grrl_learner_memory {
     struct grrl_case *cases; /* LEARN: at least one */
