@@ -19,6 +19,8 @@
 #include "grrl/learner/learner.h"
 #include "wire.h"
 
+GRRL_API_BEGIN
+
 enum grrl_agent_event_kind {
     GRRL_AGENT_NOTE,     /* something to tell the user: text */
     GRRL_AGENT_DECIDED,  /* decision */
@@ -114,5 +116,7 @@ int64_t grrl_agent_silence_us(const struct grrl_agent *agent);
 
 /* Abandons the trial under way and unsubscribes. */
 void grrl_agent_close(struct grrl_agent *agent);
+
+GRRL_API_END
 
 #endif

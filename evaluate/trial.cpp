@@ -6,11 +6,8 @@
 
 #include "baseline.hpp"
 #include "belief.hpp"
-
-extern "C" {
 #include "grrl/learner/grounding.h"
 #include "grrl/perception/perception.h"
-}
 
 namespace grrl_evaluate
 {

@@ -1,6 +1,9 @@
 /* ablations.cpp: the learners with one thing taken away or made smaller. */
 #include "policies.hpp"
 
+#include "grrl/learner/cases/learn_policy.h"
+#include "grrl/learner/relational_q/paper_policy.h"
+
 namespace grrl_experiment
 {
 

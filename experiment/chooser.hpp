@@ -11,7 +11,9 @@
 #include <set>
 #include <utility>
 
-#include "agent_c.hpp"
+#include "grrl/learner/grounding.h"
+#include "grrl/learner/learner.h"
+#include "grrl/perception/perception.h"
 
 namespace grrl_experiment
 {

@@ -2,6 +2,7 @@
 #include "policies.hpp"
 
 #include "clairvoyant.hpp"
+#include "grrl/policies.h"
 #include "motion.hpp"
 #include "rule.hpp"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "agent_c.hpp"
 #include "chooser.hpp"
+#include "grrl/learner/learner.h"
 #include "node.hpp"
 
 namespace grrl_experiment

@@ -14,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include "agent_c.hpp"
+#include "agent.h"
 #include "node.hpp"
 #include "policies.hpp"
 

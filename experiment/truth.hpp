@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "agent_c.hpp"
+#include "grrl/perception/perception.h"
+#include "wire.h"
 #include "world.hpp"
 
 namespace grrl_experiment

@@ -16,6 +16,8 @@
 #include "grrl/policies.h"
 #include "packet.h"
 
+GRRL_API_BEGIN
+
 /* The policies that the controller offers, pointers with a comma behind each; what is not named
  * here is not linked. The build sets both (onboard/CMakeLists.txt). */
 #ifndef ONBOARD_POLICIES
@@ -82,5 +84,7 @@ void onboard_controller_init(struct onboard_controller *controller, uint32_t (*c
  */
 GRRL_MUST_USE enum grrl_status onboard_controller_take(struct onboard_controller *controller,
                                                        struct onboard_packet *packet);
+
+GRRL_API_END
 
 #endif

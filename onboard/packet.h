@@ -26,6 +26,8 @@
 
 #include "grrl/learner/learner.h"
 
+GRRL_API_BEGIN
+
 /* How many cases or experiences a controller remembers. */
 #ifndef ONBOARD_ENTRIES
 #define ONBOARD_ENTRIES 256
@@ -104,5 +106,7 @@ bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
 bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
 bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
                         struct grrl_usage *usage);
+
+GRRL_API_END
 
 #endif

@@ -17,11 +17,8 @@
 #include <lcm/lcm.h>
 
 #include "supervisor.hpp"
-#include "world.hpp"
-
-extern "C" {
 #include "wire.h"
-}
+#include "world.hpp"
 
 namespace grrl_sim
 {

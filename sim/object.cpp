@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "grrl/structure/term.h"
 #include "kinematics.hpp"
 #include "object_file.hpp"
 

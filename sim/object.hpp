@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "geometry.hpp"
-#include "grrl_c.hpp"
+#include "grrl/structure/graph.h"
 #include "result.hpp"
 
 namespace grrl_sim

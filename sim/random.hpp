@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "grrl_c.hpp"
+#include "grrl/base/random.h"
 
 namespace grrl_sim
 {

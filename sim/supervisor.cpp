@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 
+#include "grrl/structure/match.h"
+
 namespace grrl_sim
 {
 

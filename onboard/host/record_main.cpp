@@ -7,12 +7,9 @@
 #include <memory>
 #include <string>
 
+#include "controller.h"
 #include "supervisor.hpp"
 #include "world.hpp"
-
-extern "C" {
-#include "controller.h"
-}
 
 using namespace grrl_sim;
 

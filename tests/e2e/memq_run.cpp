@@ -6,13 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
+#include "node.hpp"
 #include "policy_memory.h"
 #include "store_file.h"
-}
 
 using namespace grrl_sim;
 

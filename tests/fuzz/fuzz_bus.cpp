@@ -8,13 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
 #include "fuzz.h"
+#include "node.hpp"
 #include "policy_memory.h"
-}
 
 using namespace grrl_sim;
 

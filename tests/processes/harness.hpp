@@ -14,16 +14,15 @@
 #include <tuple>
 #include <vector>
 
-#include "bad_bus.hpp"
-#include "node.hpp"
-
 extern "C" {
 #include <cmocka.h>
+}
 
 #include "agent.h"
+#include "bad_bus.hpp"
 #include "grrl/learner/relational_q/experience.h"
+#include "node.hpp"
 #include "policy_memory.h"
-}
 
 namespace harness
 {

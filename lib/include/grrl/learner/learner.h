@@ -27,6 +27,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_learner_init GRRL_SIZED(grrl_learner_init)
+
 struct grrl_learner_config {
     struct grrl_perception_config perception;
     struct grrl_grounding_config grounding;

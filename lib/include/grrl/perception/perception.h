@@ -27,6 +27,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_perception_init GRRL_SIZED(grrl_perception_init)
+
 /* The points visible at one time: table plane, right-handed, metres. Ids are any numbers that stay
  * with a feature; their order means nothing. */
 struct grrl_frame {

@@ -36,6 +36,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_term_store_init GRRL_SIZED(grrl_term_store_init)
+
 typedef uint16_t grrl_term;
 
 enum grrl_term_kind {
