@@ -1,3 +1,4 @@
+/* Elementary functions against the C library's, poses and axes. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>

@@ -1,3 +1,4 @@
+/* PCG32 against its reference, and the distribution of its numbers. */
 #include "grrl/base/random.h"
 #include "support.h"
 

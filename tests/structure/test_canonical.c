@@ -1,3 +1,4 @@
+/* Canonical forms against brute force, relabelled and symmetric graphs. */
 #include "grrl/structure/canonical.h"
 #include "support.h"
 

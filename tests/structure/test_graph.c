@@ -1,3 +1,4 @@
+/* Terms to graphs and back, refusals, and full stores. */
 #include "support.h"
 
 enum { N_NODES = 12 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS };

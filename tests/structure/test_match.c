@@ -1,3 +1,4 @@
+/* Matches against brute force, relabelling, budgets, fixed pairs, orbits. */
 #include "grrl/structure/match.h"
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* Terms: parse and print, refusals at each byte, unification. */
 #include "support.h"
 
 enum { N_NODES = 400 + 4 * GRRL_MAX_TERM_DEPTH };

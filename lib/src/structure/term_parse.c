@@ -1,3 +1,4 @@
+/* Parses a term with an explicit stack, and says where it is wrong. */
 #include <string.h>
 
 #include "structure/term_private.h"
