@@ -119,6 +119,7 @@ static void test_rejected_terms(void **state)
     } cases[] = {
         {"A(l1, 45)", "an action is no structure"},
         {"L(v1, l1)", "link l1 has a variable for a property"},
+        {"L(v0, l1)", "link l1 has a variable for a property"},
         {"R(l1, l1)", "link l1 is joined to itself"},
         {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
         {"R(l1, R(l1, l2))", "link l1 is joined to itself"},
