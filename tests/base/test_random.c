@@ -94,10 +94,8 @@ static void test_uniform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_streams_differ),
-        cmocka_unit_test(test_below),
-        cmocka_unit_test(test_below_draws_again),
+        cmocka_unit_test(test_reference), cmocka_unit_test(test_streams_differ),
+        cmocka_unit_test(test_below),     cmocka_unit_test(test_below_draws_again),
         cmocka_unit_test(test_uniform),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
