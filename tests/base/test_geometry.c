@@ -96,6 +96,7 @@ static void log_is_accurate_over_the_whole_range(void **state)
     assert_true(error < 1e-7);
     assert_true(grrl_log(1.0f) == 0.0f);
     assert_true(grrl_log(0.0f) == -FLT_MAX && grrl_log(-1.0f) == -FLT_MAX);
+    assert_true(isnan(grrl_log(NAN)) && isinf(grrl_log(INFINITY)));
 }
 
 static void finiteness_is_told(void **state)
@@ -116,6 +117,17 @@ static void angles_wrap(void **state)
         assert_true(wrapped > -GRRL_PI && wrapped <= GRRL_PI);
         double turn = remainder((double)wrapped - (double)x, 2.0 * 3.14159265358979323846);
         assert_true(fabs(turn) < 4e-7);
+    }
+    for (int turns = -1299; turns <= 1299; turns += 2) { /* the floats around odd multiples of pi */
+        float x = (float)((double)turns * 3.14159265358979323846);
+        for (int i = 0; i < 10; i++)
+            x = nextafterf(x, -1e9f);
+        for (int i = 0; i < 20; i++, x = nextafterf(x, 1e9f)) {
+            float wrapped = grrl_wrap_rad(x);
+            assert_true(wrapped > -GRRL_PI && wrapped <= GRRL_PI);
+            double turn = remainder((double)wrapped - (double)x, 2.0 * 3.14159265358979323846);
+            assert_true(fabs(turn) < 4e-7);
+        }
     }
     assert_true(grrl_wrap_rad(GRRL_PI) == GRRL_PI);
     assert_true(fabsf(grrl_wrap_rad(-GRRL_PI) - GRRL_PI) < 4e-7f);

@@ -250,6 +250,9 @@ static void test_few_refinements(void **state)
     struct grrl_graph bipartite = links(8);
     struct grrl_graph cube = links(8);
     struct grrl_graph petersen = links(10);
+    struct grrl_graph star = links(10);
+    for (int i = 1; i < 10; i++)
+        join(&star, 0, i);
     for (int i = 0; i < 5; i++) {
         join(&loop, i, (i + 1) % 5);
         join(&petersen, i, (i + 1) % 5);
@@ -267,7 +270,8 @@ static void test_few_refinements(void **state)
     const struct {
         const struct grrl_graph *graph;
         uint32_t refinements;
-    } cases[] = {{&loop, 6}, {&complete, 15}, {&bipartite, 34}, {&cube, 10}, {&petersen, 15}};
+    } cases[] = {{&loop, 6},  {&complete, 15}, {&bipartite, 34},
+                 {&cube, 10}, {&petersen, 15}, {&star, 9}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct grrl_canonical canonical;
         uint32_t budget = 0;

@@ -76,6 +76,7 @@ static void test_equivalent_terms(void **state)
         {"R(l1, L(s, red, l2)) & L(l, l1)", "R(L(l, l1), l2) & L(s, red, l2) & l2"},
         {"L(_, red, l1) & lb", "D(lb, L(_, red, l1))"},
         {"R(lb, l1)", "D(lb, R(l1, lb))"},
+        {"R(L(s, l1), l2) & L(s, l1)", "R(L(s, l1), l2)"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -265,8 +266,8 @@ static void test_small_stores(void **state)
     }
 }
 
-/* A chain or loop longer than terms may be deep goes on beside itself. */
-static void test_deeper_than_terms(void **state)
+/* A chain or loop becomes one nested relation, as deep as it has joints. */
+static void test_chains_and_loops_nest(void **state)
 {
     (void)state;
     static struct grrl_term_node nodes[1024];
@@ -572,7 +573,7 @@ int main(void)
         cmocka_unit_test_setup(test_full, setup),
         cmocka_unit_test_setup(test_full_by_joints, setup),
         cmocka_unit_test_setup(test_small_stores, setup),
-        cmocka_unit_test_setup(test_deeper_than_terms, setup),
+        cmocka_unit_test_setup(test_chains_and_loops_nest, setup),
         cmocka_unit_test_setup(test_joints, setup),
         cmocka_unit_test_setup(test_order_of_discovery, setup),
         cmocka_unit_test_setup(test_own_order, setup),

@@ -36,6 +36,11 @@ static void test_parse_print(void **state)
         {"R(R(L(s, v1), L(s, v2)), L(s, v3))", "R(R(L(s, v1), L(s, v2)), L(s, v3))"},
         {"R(L(l, f3), R(L(s, f2), L(l, f1)))", "R(L(l, f3), R(L(s, f2), L(l, f1)))"},
         {"A(v3, 45\xc2\xb0)", "A(v3, 45)"},
+        {"A(l1, 0)", "A(l1, 0)"},
+        {"A(l1, 000)", "A(l1, 0)"},
+        {"A(l1, 90)", "A(l1, 90)"},
+        {"A(l1, 180)", "A(l1, 180)"},
+        {"A(l1, 225)", "A(l1, 225)"},
         {"A( L( s , red, f3 ) ,270 \xc2\xb0 ) ", "A(L(s, red, f3), 270)"},
         {"\n\tR \r( l1\v,\f l2 , l3 )\n", "R(l1, l2, l3)"},
         {"l1 & R(l1&l2,l3 & P(l4,l5)&l6)", "l1 & R(l1 & l2, l3 & P(l4, l5) & l6)"},
@@ -104,6 +109,12 @@ static const struct malformed malformed[] = {
     {"A(f1, 0x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found '0x'"},
     {"A(f1, x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found 'x'"},
     {"A(f1, 45\xc2\xb1)", 0, 8, 1, 9, SYNTAX, "expected ')' after the direction"},
+    {"A(f1, /)", 0, 6, 1, 7, SYNTAX, "found '/'"},
+    {"R(l1, l2{)", 0, 8, 1, 9, SYNTAX, "found '{'"},
+    {"R(l1, \x01)", 0, 6, 1, 7, SYNTAX, "found the byte 0x01"},
+    {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
+    {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
+    {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
     {"A f1", 0, 2, 1, 3, SYNTAX, "expected '(' after A, found 'f1'"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},
@@ -218,6 +229,10 @@ static void test_capacity(void **state)
     assert_int_equal(grrl_term_parse(&store, "l1", 2, &term, NULL), GRRL_ERR_FULL);
     grrl_term made;
     assert_int_equal(grrl_term_make_action(&store, term, 0, &made), GRRL_ERR_FULL);
+    grrl_term_store_init(&store, nodes, 2);
+    assert_int_equal(grrl_term_parse(&store, "A(l1, 0)", 8, &term, &error), GRRL_ERR_FULL);
+    assert_int_equal(error.offset, 0);
+    assert_int_equal(grrl_term_mark(&store), 1);
 }
 
 static void test_symbols(void **state)
@@ -240,6 +255,7 @@ static void test_symbols(void **state)
         assert_string_equal(grrl_term_symbol(store, property), name);
     }
     assert_int_equal(grrl_term_intern(store, "more", 4, &property), GRRL_ERR_FULL);
+    assert_int_equal(grrl_term_intern(store, "atom", 4, &property), GRRL_ERR_FULL);
     assert_int_equal(grrl_term_intern(store, "atom_3", 6, &property), GRRL_OK);
     assert_int_equal(property, 3);
     grrl_term term;
