@@ -1,3 +1,4 @@
+/* Parses a term with an explicit stack, and says where it is wrong. */
 #include <string.h>
 
 #include "structure/term_private.h"
@@ -129,7 +130,9 @@ static void skip_space(struct parser *parser)
 static char peek(struct parser *parser)
 {
     skip_space(parser);
-    return parser->at < parser->length ? parser->text[parser->at] : '\0';
+    if (parser->at == parser->length)
+        return '\0';
+    return parser->text[parser->at];
 }
 
 static bool accept(struct parser *parser, char c)
