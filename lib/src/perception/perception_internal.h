@@ -3,7 +3,7 @@
  *
  *   perception.c  tracks and keyframes: what was seen
  *   rigid.c       poses and residuals of a set of features taken as one rigid body
- *   first_look.c  what may be a body before anything has moved
+ *   initial_segmentation.c  what may be a body before anything has moved
  *   outliers.c    points that no motion explains
  *   consensus.c   the largest set of features that moved as one
  *   cut.c         the line along which two bodies part
@@ -16,7 +16,8 @@
 
 #include "grrl/perception/perception.h"
 
-/* Of one squared residual in units of its variance: an outlier weighs no more. */
+/* Of one squared residual in units of its variance, 4 standard deviations: noise reaches it once in
+ * 3,000 points, and an outlier weighs no more. */
 #define GRRL_COST_CAP 16.0f
 
 static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
@@ -62,7 +63,7 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
 uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
 
-/* first_look.c: the candidate bodies in the first keyframe. */
+/* initial_segmentation.c: the candidate bodies in the first keyframe. */
 void grrl_initial_segmentation(struct grrl_perception *p);
 
 /* Whether enough features of a body lay densely there, without those of others between them. */
