@@ -144,6 +144,16 @@ static void dissolve_redundant(struct grrl_perception *p)
     }
 }
 
+/* A body whose features have all gone to others is none. They moved there when another body
+ * dissolved, so that nothing tells where it is any more, and no joint of it is left. */
+static void drop_empty(struct grrl_perception *p)
+{
+    uint16_t slots[GRRL_MAX_FEATURES];
+    for (uint8_t b = 0; b < p->n_bodies; b++)
+        if (grrl_rigid_slots(p, b, slots) == 0)
+            remove_body(p, b--);
+}
+
 /* Two bodies that moved apart only a little are cut anew, where they part best (cut.c). */
 static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
 {
@@ -276,6 +286,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     dissolve_small(p);
     give_back_the_table(p);
     dissolve_redundant(p);
+    drop_empty(p);
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = grrl_rigid_slots(p, b, slots);
