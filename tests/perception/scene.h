@@ -120,10 +120,19 @@ static inline struct placed then(struct placed a, struct placed b)
 /* An empty table, with keyframes in which nothing is seen; every third at rest, and the first. */
 static inline void scene_start(int n_keyframes)
 {
-    struct grrl_perception_config config;
-    grrl_perception_config_default(&config);
     memset(&scene, 0, sizeof scene);
-    scene.config = config;
+    scene.config = (struct grrl_perception_config){.noise_m = 0.0007f,
+                                                   .model_error_m = 0.0001f,
+                                                   .keyframe_m = 0.008f,
+                                                   .jump_m = 0.015f,
+                                                   .table_m = 100.0f,
+                                                   .min_turn_rad = 0.035f,
+                                                   .min_slide_m = 0.00175f,
+                                                   .pivot_scale_m = 0.1f,
+                                                   .gap_m = 0.1f,
+                                                   .slack = 1.0f,
+                                                   .min_features = 4,
+                                                   .static_background = true};
     scene.n_keyframes = (uint8_t)n_keyframes;
     for (int k = 0; k < n_keyframes; k++) {
         scene.keyframe[k].at_rest = k % 3 == 0;
