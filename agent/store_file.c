@@ -1,3 +1,4 @@
+/* Saves experiences atomically, and sets damaged files aside. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "store_file.h"

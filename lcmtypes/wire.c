@@ -1,3 +1,4 @@
+/* Decodes and encodes each message, and checks every field on the way. */
 #include "wire.h"
 
 #include <float.h>

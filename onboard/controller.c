@@ -1,3 +1,4 @@
+/* Carries out requests on a learner, and hashes what it does. */
 #include "controller.h"
 
 /* FNV-1a. */

@@ -1,3 +1,4 @@
+/* Reads and writes the packets, and checks what it reads. */
 #include "packet.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Reads the trajectory of a point from text. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "handle.h"

@@ -1,3 +1,4 @@
+/* The report for programs. */
 #include "report.h"
 
 /* Every text that is printed is ours (terms, names, units): nothing needs escaping. */

@@ -1,3 +1,4 @@
+/* The report as a drawing. */
 #include "report.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* The report for people. */
 #include "report.h"
 
 static unsigned count_features(const struct grrl_model *model, unsigned body)

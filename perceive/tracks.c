@@ -1,3 +1,4 @@
+/* Counts the points of a recording, and frees it. */
 #include "tracks.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Reads tracks from CSV, and says which line is wrong. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "tracks.h"

@@ -1,3 +1,4 @@
+/* Reads the tracks of a trial from an LCM log. */
 #include "tracks.h"
 
 #include <errno.h>

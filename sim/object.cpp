@@ -1,3 +1,4 @@
+/* Objects from chains and terms, with the default dimensions. */
 #include "object.hpp"
 
 #include <algorithm>

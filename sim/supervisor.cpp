@@ -1,3 +1,4 @@
+/* Compares each model with the true structure. */
 #include "supervisor.hpp"
 
 #include <cstdlib>

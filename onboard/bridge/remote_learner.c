@@ -1,3 +1,4 @@
+/* Implements grrl_learner_* by requests to the controller. */
 #include "remote_learner.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Fills the stores to capacity and measures the slowest decisions. */
 #include "worst.h"
 
 enum { SEED = 1, ROUNDS = 100 };

@@ -1,3 +1,4 @@
+/* Every status has a text of its own. */
 #include "grrl/base/status.h"
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* Estimates, doubt, eviction and the file of the cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

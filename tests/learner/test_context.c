@@ -1,3 +1,4 @@
+/* Contexts: what is around a link, and what was tried on it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

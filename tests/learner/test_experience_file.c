@@ -1,3 +1,4 @@
+/* Files of experiences: round trips, cuts and damage at every byte. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* The learner on a simulated chain: rewards, targets, decisions, files. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* The sizes in docs/memory.md are those of the structs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

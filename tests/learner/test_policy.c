@@ -1,3 +1,4 @@
+/* Policies: uniform choice, exploration, upper bounds and ties. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* Canonical forms against brute force, relabelled and symmetric graphs. */
 #include "grrl/structure/canonical.h"
 #include "support.h"
 
@@ -239,6 +240,50 @@ static void test_alike_to_refinement(void **state)
     }
 }
 
+/* What is symmetric is searched once: the refinements that some structures take, and no more, are
+ * few next to the 5! to 10! orders of their links. With fewer the form is undecided. */
+static void test_few_refinements(void **state)
+{
+    (void)state;
+    struct grrl_graph loop = links(5);
+    struct grrl_graph complete = links(5);
+    struct grrl_graph bipartite = links(8);
+    struct grrl_graph cube = links(8);
+    struct grrl_graph petersen = links(10);
+    struct grrl_graph star = links(10);
+    for (int i = 1; i < 10; i++)
+        join(&star, 0, i);
+    for (int i = 0; i < 5; i++) {
+        join(&loop, i, (i + 1) % 5);
+        join(&petersen, i, (i + 1) % 5);
+        join(&petersen, 5 + i, 5 + (i + 2) % 5);
+        join(&petersen, i, 5 + i);
+        for (int j = 0; j < i; j++)
+            join(&complete, i, j);
+    }
+    for (int i = 0; i < 16; i++)
+        join(&bipartite, i / 4, 4 + i % 4);
+    for (int i = 0; i < 8; i++)
+        for (int bit = 1; bit < 8; bit *= 2)
+            if ((i & bit) == 0)
+                join(&cube, i, i | bit);
+    const struct {
+        const struct grrl_graph *graph;
+        uint32_t refinements;
+    } cases[] = {{&loop, 6},  {&complete, 15}, {&bipartite, 34},
+                 {&cube, 10}, {&petersen, 15}, {&star, 9}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct grrl_canonical canonical;
+        uint32_t budget = 0;
+        while (grrl_canonical_of(cases[i].graph, GRRL_ALL_PROPERTIES, budget, &canonical) ==
+               GRRL_ERR_UNDECIDED)
+            budget++;
+        assert_in_range(budget, 3, cases[i].refinements);
+        struct grrl_canonical plenty = canonical_of(cases[i].graph, GRRL_ALL_PROPERTIES);
+        assert_true(same_canonical(&canonical, &plenty));
+    }
+}
+
 static void test_hash(void **state)
 {
     (void)state;
@@ -281,6 +326,7 @@ int main(void)
         cmocka_unit_test(test_large_relabelled),
         cmocka_unit_test(test_symmetric),
         cmocka_unit_test(test_alike_to_refinement),
+        cmocka_unit_test(test_few_refinements),
         cmocka_unit_test(test_hash),
         cmocka_unit_test(test_budget),
     };

@@ -1,3 +1,4 @@
+/* Terms: parse and print, refusals at each byte, unification. */
 #include "support.h"
 
 enum { N_NODES = 400 + 4 * GRRL_MAX_TERM_DEPTH };
@@ -35,6 +36,11 @@ static void test_parse_print(void **state)
         {"R(R(L(s, v1), L(s, v2)), L(s, v3))", "R(R(L(s, v1), L(s, v2)), L(s, v3))"},
         {"R(L(l, f3), R(L(s, f2), L(l, f1)))", "R(L(l, f3), R(L(s, f2), L(l, f1)))"},
         {"A(v3, 45\xc2\xb0)", "A(v3, 45)"},
+        {"A(l1, 0)", "A(l1, 0)"},
+        {"A(l1, 000)", "A(l1, 0)"},
+        {"A(l1, 90)", "A(l1, 90)"},
+        {"A(l1, 180)", "A(l1, 180)"},
+        {"A(l1, 225)", "A(l1, 225)"},
         {"A( L( s , red, f3 ) ,270 \xc2\xb0 ) ", "A(L(s, red, f3), 270)"},
         {"\n\tR \r( l1\v,\f l2 , l3 )\n", "R(l1, l2, l3)"},
         {"l1 & R(l1&l2,l3 & P(l4,l5)&l6)", "l1 & R(l1 & l2, l3 & P(l4, l5) & l6)"},
@@ -100,6 +106,16 @@ static const struct malformed malformed[] = {
     {"A(f1, 4294967341)", 0, 6, 1, 7, SYNTAX, "found '4294967341'"},
     {"A(f1, 45x)", 0, 6, 1, 7, SYNTAX, "found '45x'"},
     {"A(f1, )", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found ')'"},
+    {"A(f1, 0x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found '0x'"},
+    {"A(f1, x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found 'x'"},
+    {"A(f1, 45\xc2\xb1)", 0, 8, 1, 9, SYNTAX, "expected ')' after the direction"},
+    {"A(f1, /)", 0, 6, 1, 7, SYNTAX, "found '/'"},
+    {"R(l1, l2{)", 0, 8, 1, 9, SYNTAX, "found '{'"},
+    {"R(l1, \x01)", 0, 6, 1, 7, SYNTAX, "found the byte 0x01"},
+    {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
+    {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
+    {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
+    {"A f1", 0, 2, 1, 3, SYNTAX, "expected '(' after A, found 'f1'"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},
     {"A(f1, 45\xc2\xb0 7)", 0, 11, 1, 11, SYNTAX, "expected ')' after the direction"},
@@ -213,6 +229,10 @@ static void test_capacity(void **state)
     assert_int_equal(grrl_term_parse(&store, "l1", 2, &term, NULL), GRRL_ERR_FULL);
     grrl_term made;
     assert_int_equal(grrl_term_make_action(&store, term, 0, &made), GRRL_ERR_FULL);
+    grrl_term_store_init(&store, nodes, 2);
+    assert_int_equal(grrl_term_parse(&store, "A(l1, 0)", 8, &term, &error), GRRL_ERR_FULL);
+    assert_int_equal(error.offset, 0);
+    assert_int_equal(grrl_term_mark(&store), 1);
 }
 
 static void test_symbols(void **state)
@@ -235,6 +255,7 @@ static void test_symbols(void **state)
         assert_string_equal(grrl_term_symbol(store, property), name);
     }
     assert_int_equal(grrl_term_intern(store, "more", 4, &property), GRRL_ERR_FULL);
+    assert_int_equal(grrl_term_intern(store, "atom", 4, &property), GRRL_ERR_FULL);
     assert_int_equal(grrl_term_intern(store, "atom_3", 6, &property), GRRL_OK);
     assert_int_equal(property, 3);
     grrl_term term;
@@ -267,6 +288,23 @@ static void test_make_checks(void **state)
     struct grrl_name nobody = {GRRL_NAME_NONE, 0};
     assert_int_equal(grrl_term_make_link(store, name, unknown, 1, &made), GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_term_make_link(store, nobody, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    struct grrl_name beyond = {GRRL_NAME_BACKGROUND + 1, 0};
+    struct grrl_name numbered = {GRRL_NAME_BACKGROUND, 1};
+    const grrl_property many[GRRL_MAX_PROPERTIES + 1] = {0};
+    assert_int_equal(grrl_term_make_link(store, beyond, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_link(store, numbered, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_link(store, name, many, GRRL_MAX_PROPERTIES + 1, &made),
+                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make(store, GRRL_TERM_ACTION, outside, 2, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(
+        grrl_term_make(store, (enum grrl_term_kind)(GRRL_TERM_AND + 1), outside, 2, &made),
+        GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_action(store, 0, 0, &made), GRRL_ERR_ARGUMENT);
+    struct grrl_substitution none = {.n = 0};
+    assert_int_equal(grrl_term_substitute(store, 0, &none, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, 0, link, 0, &none), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, link, 0, 0, &none), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, link, N_NODES - 1, 0, &none), GRRL_ERR_ARGUMENT);
     assert_int_equal(made, 0);
 }
 
@@ -344,6 +382,9 @@ static void test_unify(void **state)
         {"R(v1, v2)", "R(v2, v1)", 0, GRRL_OK, "R(v2, v2)"},
         {"R(f1, v2)", "P(f1, v2)", 0, GRRL_ERR_NONE, NULL},
         {"R(f1, f2)", "R(f1, f2, f3)", 0, GRRL_ERR_NONE, NULL},
+        {"D(R(f1, f2), f4)", "D(R(f1, f2, f3), f4)", 0, GRRL_ERR_NONE, NULL},
+        {"L(v1, f1)", "L(v2, f1)", 0, GRRL_OK, "L(v2, f1)"},
+        {"L(s, _, f1)", "L(_, v1, f1)", 0, GRRL_ERR_NONE, NULL},
         {"R(R(f1, f2), f3)", "R(f1, R(f2, f3))", 0, GRRL_ERR_NONE, NULL},
         {"R(f1, f2) & f3", "R(f1, v9) & v8", 0, GRRL_OK, "R(f1, f2) & f3"},
         {"L(v1, v1)", "L(s, f1)", 0, GRRL_OK, "L(s, f1)"},
@@ -399,6 +440,54 @@ static void test_unify_full(void **state)
     grrl_term more = support_parse(store, "v9999");
     assert_int_equal(grrl_term_unify(store, more, fixed, 0, &binding), GRRL_ERR_FULL);
     assert_int_equal(binding.n, 2 * GRRL_MAX_LINKS);
+}
+
+/* The same for properties, whose variables are others than those of names. */
+static void test_unify_full_of_properties(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_substitution binding = {.n = 0};
+    grrl_term small = support_parse(store, "L(s, f1)");
+    for (uint16_t i = 0; i <= 2 * GRRL_MAX_LINKS; i++) {
+        grrl_term variable;
+        const struct grrl_name name = {GRRL_NAME_FEATURES, 1};
+        const grrl_property property = (grrl_property)(128 + i);
+        assert_int_equal(grrl_term_make_link(store, name, &property, 1, &variable), GRRL_OK);
+        assert_int_equal(grrl_term_unify(store, variable, small, 0, &binding),
+                         i < 2 * GRRL_MAX_LINKS ? GRRL_OK : GRRL_ERR_FULL);
+    }
+    assert_int_equal(binding.n, 2 * GRRL_MAX_LINKS);
+    grrl_term copy;
+    assert_int_equal(
+        grrl_term_substitute(store, support_parse(store, "L(v0, v0)"), &binding, &copy), GRRL_OK);
+    support_assert_prints(store, copy, "L(s, v0)");
+}
+
+/* Bindings made by hand may lead in a circle; what follows them ends all the same. */
+static void test_bindings_in_a_circle(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_substitution circle = {.n = 4};
+    for (uint16_t i = 0; i < 4; i++) {
+        circle.binding[i].variable = i % 2;
+        circle.binding[i].is_property = i >= 2;
+        circle.binding[i].property = (grrl_property)(128 + 1 - i % 2);
+        circle.binding[i].name = (struct grrl_name){GRRL_NAME_VARIABLE, (uint16_t)(1 - i % 2)};
+    }
+    grrl_term copy;
+    assert_int_equal(grrl_term_substitute(store, support_parse(store, "L(v0, v1)"), &circle, &copy),
+                     GRRL_OK);
+    support_assert_prints(store, copy, "L(v0, v1)");
+}
+
+/* What no function makes is printed as a question mark. */
+static void test_unknown_prints(void **state)
+{
+    struct fixture *fixture = *state;
+    grrl_term term = support_parse(&fixture->store, "L(s, f1)");
+    fixture->nodes[term].properties[0] = 127;
+    fixture->nodes[term].name.kind = GRRL_NAME_NONE;
+    support_assert_prints(&fixture->store, term, "L(?, ?)");
 }
 
 /* A random term built bottom up from a pool of terms. */
@@ -506,6 +595,9 @@ int main(void)
         cmocka_unit_test_setup(test_paper_unification, setup),
         cmocka_unit_test_setup(test_unify, setup),
         cmocka_unit_test_setup(test_unify_full, setup),
+        cmocka_unit_test_setup(test_unify_full_of_properties, setup),
+        cmocka_unit_test_setup(test_bindings_in_a_circle, setup),
+        cmocka_unit_test_setup(test_unknown_prints, setup),
         cmocka_unit_test_setup(test_random_round_trips, setup),
         cmocka_unit_test_setup(test_random_damage, setup),
     };

@@ -1,3 +1,4 @@
+/* Elementary functions from correctly rounded operations, and poses. */
 #include "grrl/base/geometry.h"
 
 #include <float.h>

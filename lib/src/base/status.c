@@ -1,3 +1,4 @@
+/* The texts of the statuses. */
 #include "grrl/base/status.h"
 
 const char *grrl_status_text(enum grrl_status status)

@@ -1,3 +1,4 @@
+/* Terms to graphs, and graphs to terms that nest where they can. */
 #include <string.h>
 
 #include "base/bits.h"

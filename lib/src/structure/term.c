@@ -1,3 +1,4 @@
+/* The store of terms: makes and checks nodes, and walks over them. */
 #include <assert.h>
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* Parses a term with an explicit stack, and says where it is wrong. */
 #include <string.h>
 
 #include "structure/term_private.h"
@@ -113,7 +114,9 @@ static void skip_space(struct parser *parser)
 static char peek(struct parser *parser)
 {
     skip_space(parser);
-    return parser->at < parser->length ? parser->text[parser->at] : '\0';
+    if (parser->at == parser->length)
+        return '\0';
+    return parser->text[parser->at];
 }
 
 static bool accept(struct parser *parser, char c)
@@ -312,7 +315,9 @@ static enum grrl_status read_operand(struct parser *parser, grrl_term *term)
         skip_space(parser);
         size_t begin = parser->at;
         size_t end = word_end(parser, begin);
-        char letter = end - begin == 1 ? parser->text[begin] : '\0';
+        char letter = '\0';
+        if (end - begin == 1)
+            letter = parser->text[begin];
         if (letter == 'A') {
             parser->at = end;
             return read_action(parser, begin, term);

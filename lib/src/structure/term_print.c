@@ -1,3 +1,4 @@
+/* Prints a term into a buffer of fixed size. */
 #include "structure/term_private.h"
 
 void grrl_term_print_name(struct grrl_text *text, struct grrl_name name)
