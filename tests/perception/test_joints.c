@@ -480,7 +480,7 @@ static bool check_weigh(uint8_t a, uint8_t b)
     assert_int_equal(e.b, b);
     assert_int_equal(e.type, slow.revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC);
     check_fit_fields(&e, &slow.fit);
-    assert_near(e.weight, slow.weight, slow.fit.determined ? 0.01 : 0.5);
+    assert_near(e.weight, slow.weight, slow.fit.determined ? 0.02 : 0.5);
     if (slow.both_determined) {
         assert_near(e.odds, slow.odds, 0.02);
         assert_int_equal(accepted, slow.accepted);
