@@ -65,6 +65,5 @@ refused lib/src/low/cellar.c '#include "cellar.h"' 'no such file'
 refused lib/src/low/cellar.c '#include <stdlib.h>' 'does without <stdlib.h>'
 refused lib/src/attic/box.c '#include "low/cellar.h"' 'the folder is no room'
 refused table.txt 'shed roof' 'roof, which must stand above it'
-refused table.txt 'not-yet lib/src/low/cellar.c high' 'delete this line'
 
 check "$project" "$here/rooms.txt"

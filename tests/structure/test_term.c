@@ -134,7 +134,6 @@ static const struct malformed malformed[] = {
     {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
     {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
     {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
-    {"A f1", 0, 2, 1, 3, SYNTAX, "expected '(' after A, found 'f1'"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
     {"A(X(f1), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A, found 'X'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},

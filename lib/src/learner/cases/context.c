@@ -1,3 +1,4 @@
+/* context.c: what surrounds a link, and what was tried on it, in a few small numbers. */
 #include "grrl/learner/cases/context.h"
 
 #include <string.h>
