@@ -152,12 +152,17 @@ static void test_handle(void **state)
     } cases[] = {
         {"", "f:1:1: the file ends here; at least five rows"},
         {"1 2 3\n1 2 3\n1 2 3\n1 2 3\n", "f:5:1: the file ends here; at least five rows"},
-        {"1 2\n1 2 3\n", "f:2:1: three numbers, but the rows before have two"},
-        {"1\n", "f:1:1: one number only"},
-        {"1 2 3 4\n", "f:1:7: a fourth number"},
-        {"1 2\n1 b\n", "f:2:3: a row is two or three finite numbers"},
-        {"1 2m\n", "f:1:3: a row is two or three finite numbers"},
-        {"1 inf\n", "f:1:3: a row is two or three finite numbers"},
+        {"1 2\n1 2 3\n", "f:2:1: 3 numbers, but the rows before have 2"},
+        {"1\n", "f:1:1: 1 number only; a row is x y, x y z or a pose"},
+        {"1 2 3 4\n", "f:1:1: 4 numbers; a row is x y, x y z or a pose"},
+        {"1 2\n1 b\n", "f:2:3: no finite number"},
+        {"1 2m\n", "f:1:3: no finite number"},
+        {"1 inf\n", "f:1:3: no finite number"},
+        {"1 2 3 0 0 0 1\n1 2 3\n", "f:2:1: 3 numbers, but the rows before have 7"},
+        {"1 2 3 4 5 6 7\n", "f:1:1: seven numbers, but the last four are no quaternion"},
+        {"1 2 3 4 0 0 0 1\n", "f:1:1: 8 numbers; a row is x y, x y z or a pose: x y z and a "
+                              "quaternion (a time before them has to go)"},
+        {"1 2 3 4 5 6 7 8 9\n", "f:1:17: a ninth number"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         assert_false(read_handle(cases[i].text, &handle, &error));
@@ -166,12 +171,27 @@ static void test_handle(void **state)
     }
 }
 
+static void test_pose(void **state)
+{
+    (void)state;
+    struct grrl_handle handle;
+    struct grrl_tracks_error error;
+    assert_true(read_handle("1 2 3 0 0 0 1\n4 5 6 1 0 0 0\n7 8 9 .6 0 0 .8\n1 1 1 0 0 0 1\n"
+                            "2 2 2 0 0 0 1\n",
+                            &handle, &error));
+    assert_int_equal(handle.trajectory.n, 5);
+    assert_int_equal(handle.trajectory.dimensions, 3);
+    for (int i = 0; i < 9; i++)
+        assert_true(handle.rows_m[i] == (float)(i + 1) * 0.001f);
+    grrl_handle_free(&handle);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_any_order),     cmocka_unit_test(test_pixels_and_no_end_of_line),
         cmocka_unit_test(test_what_is_wrong), cmocka_unit_test(test_every_cut),
-        cmocka_unit_test(test_handle),
+        cmocka_unit_test(test_handle),        cmocka_unit_test(test_pose),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
