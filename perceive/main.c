@@ -9,6 +9,7 @@
 
 #include "doubts.h"
 #include "handle.h"
+#include "motion.h"
 #include "options.h"
 #include "report.h"
 #include "tracks.h"
@@ -222,6 +223,17 @@ static bool write_svg(const char *path, const struct grrl_report *report)
     return close_output(file, path);
 }
 
+static bool write_motion(const char *path, const struct grrl_report *report)
+{
+    FILE *file = open_output(path);
+    if (file == NULL)
+        return false;
+    bool good = grrl_motion_write(file, report);
+    if (!good)
+        (void)fail("out of memory");
+    return close_output(file, path) && good;
+}
+
 static int report_model(const struct grrl_perceive_options *options,
                         const struct grrl_tracks *tracks, struct unit unit, const char *profile)
 {
@@ -253,6 +265,8 @@ static int report_model(const struct grrl_perceive_options *options,
     grrl_doubt_losses(&report, &warnings);
     grrl_warnings_print(stderr, &warnings);
     if (options->svg != NULL && !write_svg(options->svg, &report))
+        return EXIT_INPUT;
+    if (options->motion != NULL && !write_motion(options->motion, &report))
         return EXIT_INPUT;
     (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;

@@ -78,6 +78,23 @@ expect 0 '^D(lb, P(' --unit mm --svg "$WORK/slide.svg" "$WORK/slide.csv"
 grep -q 'stroke-dasharray' "$WORK/slide.svg" || wrong "the picture has no sliding axis"
 expect 1 'No such file' --svg "$WORK/no/folder.svg" "$WORK/hinge.csv"
 
+expect 2 'picture.PNG: must be a file for SVG' --svg picture.PNG "$WORK/hinge.csv"
+
+# how the joints move: 40.1 and 30 in 60 frames
+expect 0 '^D(lb, R(' --motion "$WORK/hinge_motion.csv" "$WORK/hinge.csv"
+expect 0 '^D(lb, P(' --unit mm --motion "$WORK/slide_motion.csv" "$WORK/slide.csv"
+expect 1 'No such file' --motion "$WORK/no/folder.csv" "$WORK/hinge.csv"
+expect 2 'do not go with --handle' --motion a --handle b
+for kind in hinge slide; do
+    awk -F, -v kind=$kind 'function size(v) { return v < 0 ? -v : v }
+        NR == 1 { header = $0; next }
+        { truth = kind == "hinge" ? 40.107 * $1 / 60 : 30 * $1 / 60; n++
+          off = size(size($5) - truth); worst = off > worst ? off : worst; unit = $6; frame = $1 }
+        END { exit !(header == "frame,a,b,type,value,unit" && n == 61 && frame == 60 &&
+                     worst < 0.5 && unit == (kind == "hinge" ? "degrees" : "mm")) }' \
+        "$WORK/${kind}_motion.csv" || wrong "the motion of the $kind"
+done
+
 # more tracks than the library holds are told
 awk 'BEGIN { print "frame,point,x,y"; for (f = 0; f < 3; f++) for (i = 0; i < 1100; i++)
     printf "%d,%d,%f,%f\n", f, i, i / 1000, f / 100 }' >"$WORK/many.csv"
