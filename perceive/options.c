@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #ifndef GRRL_VERSION
 #error "GRRL_VERSION comes from the build"
@@ -22,6 +23,7 @@ enum option_id {
     OPT_NOISE,
     OPT_JSON,
     OPT_SVG,
+    OPT_MOTION,
     OPT_HELP,
     OPT_VERSION
 };
@@ -42,6 +44,7 @@ static const struct {
      "standard deviation of a point, in the file's unit; auto: measure"},
     {OPT_JSON, "json", NULL, "print JSON"},
     {OPT_SVG, "svg", "FILE", "draw features, bodies and joints"},
+    {OPT_MOTION, "motion", "FILE", "write what each joint turns or slides in each frame, as CSV"},
     {OPT_HELP, "help", NULL, "print this text"},
     {OPT_VERSION, "version", NULL, "print the version"},
 };
@@ -55,7 +58,8 @@ static const char help_head[] =
     "Finds the links and joints of what tracked points lie on, by how they move.\n\n"
     "TRACKS.csv, - for standard input: the header names the columns frame,point,x,y (or "
     "x_px,y_px)\n"
-    "and perhaps visible (0 or 1), in any order; other columns are ignored.\n\n";
+    "and perhaps visible (0 or 1), in any order; other columns are ignored. Also with ; or tabs,\n"
+    "quotes, empty cells, and the columns' names of common trackers: docs/perceive.md.\n\n";
 
 static const char help_tail[] =
     "\n"
@@ -63,7 +67,8 @@ static const char help_tail[] =
     "  tracker  above a table: noise 0.7 mm, what is sparse and never moves is background\n"
     "  camera   pixels, the camera may move: noise 1 px, model error 1.2 px, no background at "
     "rest\n"
-    "A handle's file has rows x y or x y z, in metres unless --unit says otherwise.\n"
+    "A handle's file has rows x y, x y z or x y z and a quaternion, in metres unless --unit says\n"
+    "otherwise.\n"
     "\n"
     "Exit status: 0 fine; 1 the input is wrong or cannot be read; 2 wrong command line.\n";
 
@@ -130,6 +135,20 @@ static bool parse_trial(const char *text, int32_t *trial)
     return true;
 }
 
+/* A picture is SVG whatever its name; a name that says otherwise misleads the next program. */
+static bool check_picture(const char *path)
+{
+    static const char *const others[] = {".png", ".jpg",  ".jpeg", ".gif", ".bmp",
+                                         ".tif", ".tiff", ".webp", ".pdf", ".eps"};
+    size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+        size_t n = strlen(others[i]);
+        if (length > n && strcasecmp(path + length - n, others[i]) == 0)
+            return bad("svg", path, "a file for SVG, such as picture.svg; convert it afterwards");
+    }
+    return true;
+}
+
 static bool take(enum option_id id, const char *text, struct grrl_perceive_options *options)
 {
     switch (id) {
@@ -152,6 +171,9 @@ static bool take(enum option_id id, const char *text, struct grrl_perceive_optio
         return true;
     case OPT_SVG:
         options->svg = text;
+        return check_picture(text);
+    case OPT_MOTION:
+        options->motion = text;
         return true;
     default:
         return false;
@@ -168,9 +190,9 @@ static bool consistent(const struct grrl_perceive_options *options)
         return complain("--trial needs --log FILE");
     if (options->log != NULL && options->unit != GRRL_UNIT_AS_IN_FILE)
         return complain("--unit does not go with --log FILE: messages are in metres");
-    if (options->handle != NULL &&
-        (options->svg != NULL || options->profile != GRRL_PROFILE_OF_UNIT))
-        return complain("--svg and --profile do not go with --handle FILE");
+    if (options->handle != NULL && (options->svg != NULL || options->motion != NULL ||
+                                    options->profile != GRRL_PROFILE_OF_UNIT))
+        return complain("--svg, --motion and --profile do not go with --handle FILE");
     if (options->handle != NULL && options->noise_from_points)
         return complain("--noise auto does not go with --handle FILE: what bends a trajectory is "
                         "more than noise");

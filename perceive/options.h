@@ -19,7 +19,8 @@ struct grrl_perceive_options {
     bool noise_from_points;
     int32_t trial; /* of a log, 0: the last */
     bool json;
-    const char *svg; /* NULL: no picture */
+    const char *svg;    /* NULL: no picture */
+    const char *motion; /* CSV of how the joints move; NULL: none */
 };
 
 enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };

@@ -1,4 +1,4 @@
-/* The report as a drawing. */
+/* report_svg.c: the answer for the eye. */
 #include "report.h"
 
 #include <string.h>

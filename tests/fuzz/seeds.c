@@ -330,6 +330,17 @@ int main(int argc, char **argv)
     write_store("paper", &grrl_policy_paper, 3);
     write_text("csv", "tracks", "frame,point,x,y,visible\n0,1,0.5,-1e-3,1\n1,1,,,0\n1,2,3,4,1\n");
     write_text("csv", "pixels", "point,frame,y_px,x_px,extra\r\n7,-3, 1.5 ,2,z\r\n");
+    write_text("csv", "sheet", "Frame;Track ID;X;Y\r\n0;1;2,5;-1\r\n1;1;3,25;4\r\n2;2;nan;NA\r\n");
+    write_text(
+        "csv", "quoted",
+        "\"\",\"t\",\"id\",\"pos_x\",\"pos_y\",\"occluded\"\n\"1\",0.0,1,2.5,1e0,\"FALSE\"\n");
+    write_text("csv", "tabs",
+               "\xef\xbb\xbf"
+               "FRAME\tparticle\tx\ty\r0\t1\t0\t0\r1\t1\t\t\r1\t2\t3\t4\r");
+    write_text("csv", "wide", "scorer,a,a\nbodyparts,b,b\ncoords,x,y\n0,1,2\n");
+    write_text("csv", "lost",
+               "frame,point,x,y\n0,1,5,5\n1,1,5.1,5\n2,1,5.2,5\n3,1,0,0\n4,1,0,0\n5,1,0,0\n"
+               "6,1,5.3,5\n0,2,7,5\n1,2,7.1,5\n2,2,7.2,5\n3,2,7.3,5\n4,2,7.4,5\n5,2,7.5,5\n");
     write_text("term", "chain", "D(lb, R(L(s, f1), P(L(l, f2), L(_, f3))))");
     write_text("term", "loop", "R(l1, R(l5, R(l4, R(l3, R(l2, l1))))) & P(v1, L(v2, l9))");
     write_text("term", "names", "D(lb, R(L(s, blade1), P(s, L(l, R)))) & Tip & L(l)");
