@@ -153,14 +153,47 @@ def close_loops(links, joints, forest, values):
     return values
 
 
-def _corners(link, pose):
+def movable_joints(links, joints, forest, values):
+    """For each joint, whether it can move at first order while all loops stay closed."""
+    if not forest.closing:
+        return [True] * len(joints)
+    free = [j for j, _ in forest.tree]
+
+    def column(j, function):
+        moved = [list(values), list(values)]
+        moved[0][j] += 1e-6
+        moved[1][j] -= 1e-6
+        return (function(moved[0]) - function(moved[1])) / 2e-6
+
+    def errors(at):
+        return _closing_errors(links, joints, forest, at)
+
+    def closing_values(at):
+        poses = link_poses(links, joints, forest, at)
+        return np.array([joint_value(joints[j], poses[joints[j].a], poses[joints[j].b])
+                         for j in forest.closing])
+
+    jacobian = np.array([column(j, errors) for j in free]).T
+    _, sizes, rows = np.linalg.svd(jacobian)
+    rank = int((sizes > 1e-6 * sizes[0]).sum())
+    motions = rows[rank:]
+    movable = [False] * len(joints)
+    if len(motions):
+        further = motions @ np.array([column(j, closing_values) for j in free])
+        for order, rates in ((free, motions), (forest.closing, further)):
+            for k, j in enumerate(order):
+                movable[j] = bool(np.abs(rates[:, k]).max() > 1e-6)
+    return movable
+
+
+def corners(link, pose):
     x, y = link.length / 2, link.width / 2
     return np.array([transform(pose, (sx * x, sy * y)) for sx in (-1, 1) for sy in (-1, 1)])
 
 
 def rectangles_overlap(link_a, pose_a, link_b, pose_b, margin):
     """Whether the outlines come nearer than the margin along every axis of either (exact at 0)."""
-    a, b = _corners(link_a, pose_a), _corners(link_b, pose_b)
+    a, b = corners(link_a, pose_a), corners(link_b, pose_b)
     for angle in (pose_a[2], pose_b[2]):
         for turn in (0.0, math.pi / 2):
             axis = np.array([math.cos(angle + turn), math.sin(angle + turn)])

@@ -33,7 +33,7 @@ SHAPES = ("box", "rounded", "capsule")
 
 SIDE_SLOT_SPACING_M = 0.045
 LOOP_ATTEMPTS = 60
-DRAWS = 50
+DRAWS = 20
 
 
 class ObjectError(ValueError):
@@ -343,7 +343,9 @@ def _draw_joint(joint, rng):
 
 
 def _close(obj, loop, rng):
-    """Turns the corners of every loop until it closes: the zero of its joints. False: it cannot."""
+    """Turns the corners of every loop until it closes: the zero of its joints. Empty, or why not."""
+    problem = ("does not close: no link may be longer than the others together, and the limits "
+               "must allow a closed position")
     hinged = copy.deepcopy(obj)
     for j, joint in enumerate(hinged.joints):
         if loop[j] and not joint.given:
@@ -366,12 +368,19 @@ def _close(obj, loop, rng):
         poses = kinematics.link_poses(hinged.links, hinged.joints, forest, values)
         if links_overlap(hinged, poses, 0.002) and attempt < LOOP_ATTEMPTS - 1:
             continue
-        for on, joint, value in zip(loop, obj.joints, values):
+        closed = copy.deepcopy(obj.joints)
+        for on, joint, value in zip(loop, closed, values):
             if on and not joint.given:
                 joint.angle = kinematics.wrap(joint.angle + value)
                 joint.friction *= LOOP_FRICTION_SHARE
-        return True
-    return False
+        at = [value if joint.given else 0.0 for joint, value in zip(closed, values)]
+        if not all(kinematics.movable_joints(obj.links, closed, forest, at)):
+            problem = ("has a joint that cannot move; a planar loop needs at least 4 joints (3 if "
+                       "all are prismatic)")
+            continue
+        obj.joints = closed
+        return ""
+    return problem
 
 
 def links_overlap(obj, poses, margin):
@@ -399,11 +408,11 @@ def draw_object(template, rng):
         for joint in obj.joints:
             _draw_joint(joint, rng)
         loop = _Layout(obj).loop
-        if not any(loop) or _close(obj, loop, rng):
+        problem = _close(obj, loop, rng) if any(loop) else ""
+        if not problem:
             return obj
     names = sorted({obj.links[i].name for on, j in zip(loop, obj.joints) if on for i in (j.a, j.b)})
-    raise ObjectError(f"the loop through {', '.join(names)} cannot close: no link may be longer "
-                      "than the others together, and the limits must allow a closed position")
+    raise ObjectError(f"the loop through {', '.join(names)} {problem}")
 
 
 __all__ = ["Joint", "Link", "Object", "ObjectError", "draw_object", "links_overlap",

@@ -15,7 +15,7 @@ FINGER_GAIN = 1500.0  # N s/m: how hard the guide holds its speed, up to the for
 FOOT_RADIUS_M = 0.003
 STEP_S = 1 / 480
 STEPS_PER_FRAME = 16
-LIFTED_M = 1.0
+LIFTED_M = 10.0  # above the camera
 
 # Bits of what collides: feet with the table, bodies with bodies and with the finger.
 _TABLE, _BODY, _FINGER = 1, 2, 4
@@ -70,7 +70,7 @@ def _frame(pose):
             "quat": _text(math.cos(pose[2] / 2), 0, 0, math.sin(pose[2] / 2))}
 
 
-def scene_xml(obj, poses, values, table_m):
+def scene_xml(obj, poses, table_m):
     """The model with the object at these poses, which are qpos0 of free and fixed roots.
 
     Joints start at 0 in qpos0; World sets their values.
@@ -82,7 +82,7 @@ def scene_xml(obj, poses, values, table_m):
     _add(option, "flag", multiccd="enable")
     visual = _add(root, "visual")
     _add(visual, "global", offwidth="1280", offheight="1024")
-    _add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
+    _add(visual, "headlight", ambient="0.3 0.3 0.3", diffuse="0.2 0.2 0.2", specular="0 0 0")
     default = _add(root, "default")
     for name, attributes in (
         ("body", {"contype": _BODY, "conaffinity": _BODY | _FINGER, "friction": "0.3 0.001 0.0001"}),
@@ -93,24 +93,25 @@ def scene_xml(obj, poses, values, table_m):
         _add(_add(default, "default", **{"class": name}), "geom", **attributes)
     _add(default, "joint", limited="true", armature="1e-5")
     world = _add(root, "worldbody")
-    _add(world, "light", pos="0.3 -0.4 2", dir="-0.15 0.2 -1", directional="true")
+    _add(world, "light", pos="0.5 -0.6 3", dir="-0.15 0.2 -1", diffuse="0.4 0.4 0.4",
+         specular="0.1 0.1 0.1")
     _add(world, "camera", name="above", pos="0 0 2.6", fovy="38")
     _add(world, "geom", name="table", type="plane", contype=_TABLE, conaffinity=0,
-         size=_text(table_m[0] / 2, table_m[1] / 2, 0.05), rgba="0.75 0.72 0.66 1")
+         size=_text(table_m[0] / 2, table_m[1] / 2, 0.05), rgba="0.6 0.57 0.5 1")
     finger = _add(world, "body", name="finger", pos=_text(0, 0, LIFTED_M))
     _add(finger, "joint", name="guide", type="slide", axis="1 0 0", limited="false")
     _add(finger, "geom", name="finger", type="capsule", fromto=_text(0, 0, 0, 0, 0, 0.1),
          size=_text(FINGER_RADIUS_M), mass=FINGER_MASS_KG, contype=_FINGER, conaffinity=0,
          priority=2, friction=_text(obj.finger_friction, 0.001, 0.0001), rgba="0.2 0.2 0.25 1")
     contact, equality = _add(root, "contact"), _add(root, "equality")
-    _add_links(world, contact, equality, obj, poses, values)
+    _add_links(world, contact, equality, obj, poses)
     actuator = _add(root, "actuator")
     _add(actuator, "velocity", name="finger", joint="guide", kv=_text(FINGER_GAIN),
          forcerange="-10 10")
     return xml.tostring(root, encoding="unicode")
 
 
-def _add_links(world, contact, equality, obj, poses, values):
+def _add_links(world, contact, equality, obj, poses):
     forest = kinematics.spanning_forest(obj.links, obj.joints)
     colours = ("0.85 0.45 0.25 1", "0.3 0.55 0.75 1", "0.45 0.65 0.35 1", "0.7 0.45 0.65 1")
     bodies = {}
@@ -141,10 +142,9 @@ def _add_links(world, contact, equality, obj, poses, values):
     apart = {frozenset((j.a, j.b)) for j in obj.joints}
     movable = [i for i, link in enumerate(obj.links) if not link.fixed]
     for n, i in enumerate(movable):
-        for attributes in [{"rgba": colours[n % len(colours)]}]:
-            _shape(bodies[i], obj.links[i])
-            for geom in bodies[i].findall("geom"):
-                geom.attrib.update(attributes)
+        _shape(bodies[i], obj.links[i])
+        for geom in bodies[i].findall("geom"):
+            geom.set("rgba", colours[n % len(colours)])
         for k in movable[n + 1:]:
             # Neighbours slide over one another; links that lie crossed at the start stay so.
             if frozenset((i, k)) in apart or kinematics.rectangles_overlap(

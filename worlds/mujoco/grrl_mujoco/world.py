@@ -86,9 +86,9 @@ def _place_components(obj, forest, flat, rng):
             turn = (0.0, 0.0, rng.uniform(-math.pi, math.pi))
             turned = {i: kinematics.compose(turn, flat[i]) for i in range(len(flat))
                       if forest.component[i] == c}
-            corners = np.concatenate([kinematics._corners(obj.links[i], turned[i])
+            outline = np.concatenate([kinematics.corners(obj.links[i], turned[i])
                                       for i in members])
-            low, high = corners.min(axis=0), corners.max(axis=0)
+            low, high = outline.min(axis=0), outline.max(axis=0)
             slack = np.array(TABLE_M) / 2 - 0.02 - (high - low) / 2
             slack = np.maximum(slack, 0.0)  # a long object lies over the edge
             shift = rng.uniform(-slack, slack) - (low + high) / 2
@@ -114,7 +114,7 @@ class World:
         self.noise_m = noise_m
         self.object = draw_object(template, placing)
         values, poses = _place(self.object, placing)
-        self.model = mujoco.MjModel.from_xml_string(scene_xml(self.object, poses, values, TABLE_M))
+        self.model = mujoco.MjModel.from_xml_string(scene_xml(self.object, poses, TABLE_M))
         self.data = mujoco.MjData(self.model)
         for j, value in enumerate(values):
             self.data.qpos[self.model.joint(f"j{j}").qposadr[0]] = value
