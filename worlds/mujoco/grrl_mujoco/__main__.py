@@ -111,15 +111,23 @@ def now_us():
 now_us.offset = time.time_ns() // 1000 - time.monotonic_ns() // 1000
 
 
-class Stopped(Exception):
-    pass
+stopped = False
+
+
+def stop(*_):
+    global stopped
+    stopped = True
 
 
 def loop(node, bus, options):
-    """0 when all trials are done, 1 when the wait for an agent is over."""
+    """0 when all trials are done or a signal came, 1 when the wait for an agent is over."""
     hint_us = 0
-    while not node.finished:
-        bus.handle_timeout(POLL_MS)
+    while not (node.finished or stopped):
+        try:
+            bus.handle_timeout(POLL_MS)
+        except OSError:
+            if not stopped:  # else a signal ended the wait
+                raise
         node.tick()
         silent = now_us() - node.agent_heard_us
         if options.agent_timeout and silent >= options.agent_timeout * 1e6:
@@ -169,10 +177,6 @@ def run(options, template):
     return status
 
 
-def stop(*_):
-    raise Stopped
-
-
 def main(arguments):
     options = parse_options(arguments)
     try:
@@ -187,8 +191,6 @@ def main(arguments):
     signal.signal(signal.SIGTERM, stop)
     try:
         return run(options, template)
-    except Stopped:
-        return 0
     except (OSError, ObjectError, RuntimeError) as error:
         complain(str(error))
         return 1
