@@ -3,13 +3,14 @@
 import argparse
 import csv
 import secrets
+import select
 import signal
 import sys
 import time
 
 from .objects import ObjectError, draw_object, parse_object
 
-POLL_MS = 5
+POLL_S = 0.005
 HINT_PERIOD_US = 5_000_000
 OUTCOMES = {1: "discovered", 2: "capped", 3: "aborted"}
 EPILOG = """Without --lcm-url the environment variable LCM_DEFAULT_URL counts.
@@ -123,11 +124,9 @@ def loop(node, bus, options):
     """0 when all trials are done or a signal came, 1 when the wait for an agent is over."""
     hint_us = 0
     while not (node.finished or stopped):
-        try:
-            bus.handle_timeout(POLL_MS)
-        except OSError:
-            if not stopped:  # else a signal ended the wait
-                raise
+        # Waits outside LCM, whose own wait fails when a signal comes.
+        if select.select([bus.fileno()], [], [], POLL_S)[0]:
+            bus.handle_timeout(0)
         node.tick()
         silent = now_us() - node.agent_heard_us
         if options.agent_timeout and silent >= options.agent_timeout * 1e6:
