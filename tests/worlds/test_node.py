@@ -5,7 +5,7 @@ import unittest
 
 import grrl
 from grrl_mujoco import wire
-from grrl_mujoco.node import MOST_LOOKS, REST_FRAMES_TO_SETTLE, Node
+from grrl_mujoco.node import MOST_LOOKS, MOST_UNJUDGED, REST_FRAMES_TO_SETTLE, Node
 from grrl_mujoco.objects import parse_object
 
 PLANT, AGENT, OTHER = 11, 22, 33
@@ -223,6 +223,22 @@ class Protocol(unittest.TestCase):
             if not self.node.agent_is_blind:
                 self.settle()
         self.assertTrue(self.node.agent_is_blind)
+
+    def test_an_agent_without_a_model_stalls_nothing(self):
+        self.make()
+        for n in range(MOST_UNJUDGED):
+            self.assertFalse(self.node.agent_is_mute)
+            self.start_trial()
+            for _ in range(13):
+                self.now += 5_000_000
+                if self.newest(grrl.trial_t).outcome == grrl.trial_t.NONE:
+                    self.command()
+                self.node.tick()
+            trial = self.newest(grrl.trial_t)
+            self.assertEqual((trial.trial_id, trial.outcome), (n + 1, grrl.trial_t.ABORTED))
+            self.command()
+        self.assertTrue(self.node.agent_is_mute)
+        self.assertEqual(self.node.counted_trials, 0)
 
     def test_real_time_frames_come_by_the_clock(self):
         self.make(real_time=True)

@@ -141,6 +141,9 @@ def loop(node, bus, options):
         if node.agent_is_blind:
             complain("the agent finds nothing to push, giving up: too much noise (--noise)?")
             return 1
+        if node.agent_is_mute:
+            complain("the agent sends no model that can be judged, giving up: what does it say?")
+            return 1
     return 0
 
 

@@ -18,6 +18,8 @@ TRIAL_PERIOD_US = 200_000  # real time: until the agent agrees
 STATUS_PERIOD_US = 100_000
 FRAME_PERIOD_US = 33_333
 FINISH_PATIENCE_US = 2_000_000
+MODEL_PATIENCE_US = 60_000_000  # an emulated controller takes seconds
+MOST_UNJUDGED = 3  # trials in a row aborted for want of a model
 
 # OFFER and ENDED wait for the agent to agree; RESTING and PUSHING send frames; DECIDING waits for
 # model, judgement and the next push.
@@ -44,7 +46,9 @@ class Node:
         self.status = grrl.push_status_t()
         self.agent_session_id = self.agent_revision = 0
         self.agent_heard_us = now_us()
-        self.sent_us = self.trial_us = self.status_us = self.frame_due_us = self.finishing_us = 0
+        self.sent_us = self.trial_us = self.status_us = self.frame_due_us = 0
+        self.settled_us = self.finishing_us = 0
+        self.unjudged = 0
         for channel, kind, handler in (
             (wire.CHANNEL_PUSH_COMMAND, grrl.push_command_t, self._take_command),
             (wire.CHANNEL_MODEL, grrl.model_t, self._take_model),
@@ -63,6 +67,11 @@ class Node:
     def agent_is_blind(self):
         """Lock-step: it finds nothing to push, however often it looks; the run cannot go on."""
         return self.looks > MOST_LOOKS
+
+    @property
+    def agent_is_mute(self):
+        """Its models do not come, or only such as are refused; the run cannot go on."""
+        return self.unjudged >= MOST_UNJUDGED
 
     # Messages coming in.
 
@@ -145,6 +154,7 @@ class Node:
                 or self.trial.judged_cmd_seq == self.ack_cmd_seq):
             return
         self.trial.judged_cmd_seq = self.ack_cmd_seq
+        self.unjudged = 0
         if self.supervisor.correct(model):
             self._end_trial(grrl.trial_t.DISCOVERED)
         elif self.pushes >= self.cap:
@@ -230,8 +240,10 @@ class Node:
         self.rest_frames += 1
         if self.rest_frames < REST_FRAMES_TO_SETTLE:
             return grrl.points_t.REST
-        if self.stage != DECIDING and self.on_rest:
-            self.on_rest(self.trial_id, self.pushes, self.world)
+        if self.stage != DECIDING:
+            self.settled_us = self.now_us()
+            if self.on_rest:
+                self.on_rest(self.trial_id, self.pushes, self.world)
         self.stage = DECIDING
         return grrl.points_t.SETTLED
 
@@ -280,12 +292,22 @@ class Node:
             return
         if self.stage == FINISHING and now - self.finishing_us >= FINISH_PATIENCE_US:
             self.stage = DONE
+        elif self._waits_for_a_model(now):
+            self.unjudged += 1
+            self.on_note("no model comes that can be judged, the trial is aborted")
+            self._end_trial(grrl.trial_t.ABORTED)
         elif self.real_time:
             self._tick_real_time(now)
         elif now - self.sent_us >= REPEAT_US:
             self._publish_trial()
             if self.stage in FRAMES_FLOW:
                 self._publish_points()
+
+    def _waits_for_a_model(self, now):
+        """Too long, from an agent that is there."""
+        return (self.stage == DECIDING and self.trial.judged_cmd_seq != self.ack_cmd_seq
+                and now - self.settled_us >= MODEL_PATIENCE_US
+                and now - self.agent_heard_us < SILENCE_US)
 
     def _tick_real_time(self, now):
         if self.agent_revision != self.trial.revision and now - self.trial_us >= TRIAL_PERIOD_US:
