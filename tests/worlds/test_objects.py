@@ -107,6 +107,10 @@ class Drawing(unittest.TestCase):
             apart = math.dist(poses[k][:2], poses[k + 1][:2])
             self.assertAlmostEqual(apart, (obj.links[k].length + obj.links[k + 1].length) / 2)
 
+    def test_branches_slide_sideways(self):
+        obj = draw_object(parse_object("P(l1, l2, l3, l4)"), np.random.default_rng(3))
+        self.assertEqual([round(math.degrees(j.axis)) for j in obj.joints], [0, 180, 90])
+
     def test_loops_close(self):
         for text in (FIVE, "P(l1, R(l4, R(l3, R(l2, l1))))"):
             for seed in range(3):

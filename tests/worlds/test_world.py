@@ -1,6 +1,7 @@
 """The physics: what a push does, how firmly it is limited, and that it comes out the same again."""
 
 import math
+import tempfile
 import unittest
 from types import SimpleNamespace
 
@@ -13,11 +14,11 @@ from grrl_mujoco.world import MAX_POINTS, World
 NOISE_M = 0.0007
 
 
-def push_at(scene, link, **changes):
-    """A push across a link, a third of its length from the centre."""
+def push_at(scene, link, lever_share=1 / 3, **changes):
+    """A push across a link, so much of its length from the centre."""
     x, y, angle = scene.poses()[link]
     across = (-math.sin(angle), math.cos(angle))
-    lever = scene.object.links[link].length / 3
+    lever = scene.object.links[link].length * lever_share
     at = (x + lever * math.cos(angle), y + lever * math.sin(angle))
     values = {"start": tuple(a - 0.06 * d for a, d in zip(at, across)),
               "end": tuple(a + 0.08 * d for a, d in zip(at, across)),
@@ -41,13 +42,13 @@ def moved(before, after):
 
 class Pushes(unittest.TestCase):
     def test_moves_the_link_as_far_as_asked(self):
-        scene = World(parse_object("l1"), [1], NOISE_M)
-        before = scene.poses()
-        carry_out(scene, push_at(scene, 0))
-        self.assertEqual(scene.reason, world.REACHED)
-        self.assertGreater(moved(before, scene.poses())[0], 0.005)
-        self.assertLess(moved(before, scene.poses())[0], 0.035)
-        self.assertIsNone(scene.finger_position())
+        for travel in (0.01, 0.03):
+            scene = World(parse_object("l1"), [1], NOISE_M)
+            before = scene.poses()
+            carry_out(scene, push_at(scene, 0, 0.0, travel=travel))
+            self.assertEqual(scene.reason, world.REACHED)
+            self.assertAlmostEqual(moved(before, scene.poses())[0], travel, delta=0.003)
+            self.assertIsNone(scene.finger_position())
 
     def test_force_limit_holds_it_back(self):
         scene = World(parse_object("l1"), [1], NOISE_M)
@@ -120,6 +121,25 @@ class Pushes(unittest.TestCase):
                 self.assertIn(words, scene.begin_push(push_at(scene, 0, **changes)))
         self.assertEqual(scene.begin_push(push_at(scene, 0)), "")
         self.assertIn("going on", scene.begin_push(push_at(scene, 0)))
+
+
+class Start(unittest.TestCase):
+    def test_joints_start_where_they_were_drawn(self):
+        """Whichever of its two links a joint hangs on."""
+        for statement in ("link l1 0.1 0.03 0.1", "joint l2 l1 10 80 0.02 0.05 0 0.05 0",
+                          "joint l1 l2 10 80 0.02 0.05 0 0.05 0"):
+            for letter in "RP":
+                if letter == "P":
+                    statement = statement.replace("10 80", "0.01 0.03")
+                with tempfile.NamedTemporaryFile("w", suffix=".grrl") as file:
+                    file.write(f"term {letter}(l1, l2)\n{statement}\n")
+                    file.flush()
+                    scene = World(parse_object(file.name), [9], NOISE_M)
+                joint, poses = scene.object.joints[0], scene.poses()
+                value = kinematics.joint_value(joint, poses[joint.a], poses[joint.b])
+                drawn = float(scene.data.qpos[scene.model.joint("j0").qposadr[0]])
+                self.assertAlmostEqual(value, drawn, delta=1e-4)
+                self.assertTrue(joint.initial[0] - 1e-4 <= value <= joint.initial[1] + 1e-4)
 
 
 class Seeds(unittest.TestCase):
