@@ -11,10 +11,11 @@ shift 2
 WORLD=$ROOT/worlds/mujoco/grrl-mujoco
 export LC_ALL=C
 
-if [ ! -f "$ROOT/build/mujoco/stamp" ]; then
+if [ ! -f "$ROOT/build/mujoco/packages.stamp" ]; then
     echo "skipped: the Python packages are missing; worlds/mujoco/setup installs them"
     exit 77
 fi
+"$ROOT/worlds/mujoco/setup" || exit 1 # the messages may have changed since
 
 if [ "$CASE" = unit ]; then
     tests=$ROOT/tests/worlds

@@ -70,7 +70,7 @@ def _frame(pose):
             "quat": _text(math.cos(pose[2] / 2), 0, 0, math.sin(pose[2] / 2))}
 
 
-def scene_xml(obj, poses, table_m):
+def scene_xml(obj, poses):
     """The model with the object at these poses, which are qpos0 of free and fixed roots.
 
     Joints start at 0 in qpos0; World sets their values.
@@ -97,7 +97,7 @@ def scene_xml(obj, poses, table_m):
          specular="0.1 0.1 0.1")
     _add(world, "camera", name="above", pos="0 0 2.6", fovy="38")
     _add(world, "geom", name="table", type="plane", contype=_TABLE, conaffinity=0,
-         size=_text(table_m[0] / 2, table_m[1] / 2, 0.05), rgba="0.6 0.57 0.5 1")
+         size="0 0 0.05", rgba="0.6 0.57 0.5 1")
     finger = _add(world, "body", name="finger", pos=_text(0, 0, LIFTED_M))
     _add(finger, "joint", name="guide", type="slide", axis="1 0 0", limited="false")
     _add(finger, "geom", name="finger", type="capsule", fromto=_text(0, 0, 0, 0, 0, 0.1),

@@ -114,7 +114,7 @@ class World:
         self.noise_m = noise_m
         self.object = draw_object(template, placing)
         values, poses = _place(self.object, placing)
-        self.model = mujoco.MjModel.from_xml_string(scene_xml(self.object, poses, TABLE_M))
+        self.model = mujoco.MjModel.from_xml_string(scene_xml(self.object, poses))
         self.data = mujoco.MjData(self.model)
         for j, value in enumerate(values):
             self.data.qpos[self.model.joint(f"j{j}").qposadr[0]] = value
