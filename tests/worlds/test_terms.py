@@ -56,7 +56,8 @@ class Terms(unittest.TestCase):
     def test_chain_runs_from_the_last_link_to_the_first(self):
         structure = parse_term("P(l4, R(R(l1, l2), l3))")
         self.assertEqual(list(structure.links), ["l4", "l1", "l2", "l3"])
-        self.assertEqual(structure.joints, [("R", "l1", "l2"), ("R", "l2", "l3"), ("P", "l4", "l1")])
+        self.assertEqual(structure.joints,
+                         [("R", "l1", "l2"), ("R", "l2", "l3"), ("P", "l4", "l1")])
 
     def test_branches_properties_and_background(self):
         structure = parse_term("D(lb, R(L(l, f1), L(s, f2), f3))")

@@ -318,5 +318,6 @@ class Node:
             return
         self._send_frame()
         self.frame_due_us += FRAME_PERIOD_US
-        if self.frame_due_us < now - FRAME_PERIOD_US:  # after a pause the rate is kept, not the count
+        # After a pause of the process the rate is kept, not the count.
+        if self.frame_due_us < now - FRAME_PERIOD_US:
             self.frame_due_us = now

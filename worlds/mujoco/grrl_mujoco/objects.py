@@ -343,7 +343,9 @@ def _draw_joint(joint, rng):
 
 
 def _close(obj, loop, rng):
-    """Turns the corners of every loop until it closes: the zero of its joints. Empty, or why not."""
+    """Turns the corners of every loop until it closes, which is the zero of its joints.
+
+    Returns an empty text, or why it cannot."""
     problem = ("does not close: no link may be longer than the others together, and the limits "
                "must allow a closed position")
     hinged = copy.deepcopy(obj)

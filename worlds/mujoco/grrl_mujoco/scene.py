@@ -36,8 +36,8 @@ def _shape(body, link):
     z, half = low + link.height / 2, link.height / 2
     common = {"class": "body", "mass": link.mass}
     if link.shape == "capsule":
-        _add(body, "geom", type="capsule", size=_text(y, x - y), pos=_text(0, 0, z), quat=_text(math.sqrt(0.5), 0, math.sqrt(0.5), 0),
-             **common)
+        _add(body, "geom", type="capsule", size=_text(y, x - y), pos=_text(0, 0, z),
+             quat=_text(math.sqrt(0.5), 0, math.sqrt(0.5), 0), **common)
     elif link.shape == "rounded":
         for share, attributes in (
             (0.8, {"type": "box", "size": _text(x - y, y, half), "pos": _text(0, 0, z)}),
@@ -77,15 +77,16 @@ def scene_xml(obj, poses):
     """
     root = xml.Element("mujoco", model="grrl")
     _add(root, "compiler", angle="radian", autolimits="true")
-    option = _add(root, "option", timestep=_text(STEP_S), integrator="implicitfast", cone="elliptic",
-                  impratio="20", noslip_iterations="4")
+    option = _add(root, "option", timestep=_text(STEP_S), integrator="implicitfast",
+                  cone="elliptic", impratio="20", noslip_iterations="4")
     _add(option, "flag", multiccd="enable")
     visual = _add(root, "visual")
     _add(visual, "global", offwidth="1280", offheight="1024")
     _add(visual, "headlight", ambient="0.3 0.3 0.3", diffuse="0.2 0.2 0.2", specular="0 0 0")
     default = _add(root, "default")
     for name, attributes in (
-        ("body", {"contype": _BODY, "conaffinity": _BODY | _FINGER, "friction": "0.3 0.001 0.0001"}),
+        ("body", {"contype": _BODY, "conaffinity": _BODY | _FINGER,
+                  "friction": "0.3 0.001 0.0001"}),
         ("foot", {"type": "sphere", "size": _text(FOOT_RADIUS_M), "contype": 0,
                   "conaffinity": _TABLE, "mass": 1e-5, "priority": 1,
                   "friction": _text(obj.table_friction, 0.001, 0.0001)}),
@@ -120,10 +121,8 @@ def _add_links(world, contact, equality, obj, poses):
         bodies[i] = _add(parent, "body", name=f"l{i}", **_frame(pose))
 
     for i in forest.roots:
-        if obj.links[i].fixed:
-            bodies[i] = _add(world, "body", name=f"l{i}", **_frame(poses[i]))
-        else:
-            add_body(world, i, poses[i])
+        add_body(world, i, poses[i])
+        if not obj.links[i].fixed:
             _add(bodies[i], "freejoint", name=f"free{i}")
     for j, from_a in forest.tree:
         joint = obj.joints[j]
