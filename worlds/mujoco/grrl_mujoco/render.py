@@ -32,9 +32,22 @@ class Pictures:
         os.makedirs(directory, exist_ok=True)
         self.directory = directory
         self.model = self.renderer = None
+        self._try_out()
+
+    def _try_out(self):
+        """RuntimeError if this machine cannot draw; better now than at the first rest."""
+        try:
+            import mujoco  # reads MUJOCO_GL when it is imported
+
+            empty = mujoco.MjModel.from_xml_string("<mujoco/>")
+            mujoco.Renderer(empty, 8, 8).close()
+        except Exception as error:  # what fails, and how, differs with MUJOCO_GL and the driver
+            raise RuntimeError(
+                f"--render: OpenGL does not start ({error}); install EGL (Debian: libegl1) and set "
+                "MUJOCO_GL=egl, or leave --render out") from None
 
     def take(self, trial_id, pushes, world):
-        import mujoco  # reads MUJOCO_GL when it is imported
+        import mujoco
 
         if self.model is not world.model:
             if self.renderer is not None:
