@@ -40,7 +40,8 @@ def ours(text):
 
 
 def random_term(rng, depth):
-    name = rng.choice(["l", "f"]) + str(rng.randint(1, 9))
+    # No more names than a small build holds links.
+    name = rng.choice(["l1", "l2", "l3", "l4", "l5", "f1", "f2", "f3"])
     if depth == 0 or rng.random() < 0.2:
         properties = rng.choice([[], [], ["s"], ["l"], ["_", "s"]])
         return f"L({', '.join([*properties, name])})" if properties else name
