@@ -299,6 +299,32 @@ static void test_hash(void **state)
     assert_int_not_equal(canonical_of(&graph, GRRL_NO_PROPERTIES).hash, canonical.hash);
 }
 
+/* Components stand side by side by size, then by their labels, then by their joints: stores of
+ * experiences keep this order. */
+static void test_order_of_components(void **state)
+{
+    (void)state;
+    struct grrl_graph graph = links(9);
+    graph.label[0] = 2;
+    graph.label[1] = 1;
+    join(&graph, 2, 3);
+    join(&graph, 4, 5);
+    join(&graph, 6, 7);
+    graph.label[2] = 1;
+    graph.label[3] = 2;
+    graph.label[4] = 1;
+    graph.label[5] = 1;
+    assert_int_equal(grrl_graph_add_joint(&graph, 7, 8, GRRL_PRISMATIC), GRRL_OK);
+    struct grrl_canonical canonical = canonical_of(&graph, GRRL_ALL_PROPERTIES);
+    const uint8_t expected[6] = {1, 0, 4, 5, 2, 3};
+    for (int i = 0; i < 6; i++)
+        assert_true(canonical.graph.label[i] == graph.label[expected[i]]);
+    assert_int_equal(canonical.order[0], 1);
+    assert_int_equal(canonical.order[1], 0);
+    assert_int_equal(canonical.order[4], 2);
+    assert_int_equal(canonical.order[5], 3);
+}
+
 static void test_budget(void **state)
 {
     (void)state;
@@ -328,6 +354,7 @@ int main(void)
         cmocka_unit_test(test_alike_to_refinement),
         cmocka_unit_test(test_few_refinements),
         cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_order_of_components),
         cmocka_unit_test(test_budget),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

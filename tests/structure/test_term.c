@@ -115,6 +115,8 @@ static const struct malformed malformed[] = {
     {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
     {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
     {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
+    {"A(f1, 45\xc2\xb0", 0, 10, 1, 10, SYNTAX, "of an action, found the end of the text"},
+    {"aWordOf24LettersAltogeth", 0, 0, 1, 1, SYNTAX, "found 'aWordOf24LettersAltogeth'"},
     {"A f1", 0, 2, 1, 3, SYNTAX, "expected '(' after A, found 'f1'"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},
@@ -215,7 +217,10 @@ static void test_capacity(void **state)
         assert_int_equal(status, capacity < 8 ? GRRL_ERR_FULL : GRRL_OK);
         if (status != GRRL_OK) {
             assert_int_equal(grrl_term_mark(&store), 1);
-            assert_non_null(strstr(error.message, "the term store is full"));
+            char expected[64];
+            (void)snprintf(expected, sizeof expected, "the term store is full: it holds %u nodes",
+                           capacity - 1u);
+            assert_string_equal(error.message, expected);
             assert_int_equal(store.high_water, capacity);
         }
     }
