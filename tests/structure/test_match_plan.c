@@ -255,7 +255,7 @@ static void test_order_from(void **state)
 }
 
 /* The vertex to begin with has the rarest label among the targets, then the most joints. Labels
- * share eight counters, so that some cannot be told apart. */
+ * share eight counters, and most small numbers share one. */
 static void test_order_glanced(void **state)
 {
     (void)state;

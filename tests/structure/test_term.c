@@ -252,7 +252,15 @@ static void test_symbols(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_int_equal(grrl_term_intern(store, bad[i], strlen(bad[i]), &property),
                          GRRL_ERR_SYNTAX);
-    for (int i = 3; i <= GRRL_MAX_SYMBOLS; i++) {
+    static const char broken[] = "L(gone, f1"; /* takes its new symbol back */
+    static const char whole[] = "L(gone, f1)";
+    grrl_term link;
+    assert_int_equal(grrl_term_parse(store, broken, sizeof broken - 1, &link, NULL),
+                     GRRL_ERR_SYNTAX);
+    assert_int_equal(store->n_symbols, 2);
+    support_assert_prints(store, support_parse(store, whole), whole);
+    assert_int_equal(store->n_symbols, 3);
+    for (int i = 4; i <= GRRL_MAX_SYMBOLS; i++) {
         char name[GRRL_SYMBOL_BYTES];
         int length = snprintf(name, sizeof name, "atom_%d", i);
         assert_int_equal(grrl_term_intern(store, name, (size_t)length, &property), GRRL_OK);
@@ -261,8 +269,8 @@ static void test_symbols(void **state)
     }
     assert_int_equal(grrl_term_intern(store, "more", 4, &property), GRRL_ERR_FULL);
     assert_int_equal(grrl_term_intern(store, "atom", 4, &property), GRRL_ERR_FULL);
-    assert_int_equal(grrl_term_intern(store, "atom_3", 6, &property), GRRL_OK);
-    assert_int_equal(property, 3);
+    assert_int_equal(grrl_term_intern(store, "atom_4", 6, &property), GRRL_OK);
+    assert_int_equal(property, 4);
     grrl_term term;
     struct grrl_term_error error;
     assert_int_equal(grrl_term_parse(store, "L(s,more,f1)", 12, &term, &error), GRRL_ERR_FULL);
