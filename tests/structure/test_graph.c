@@ -437,6 +437,9 @@ static void test_own_order(void **state)
         {"R(l1, l2) & R(l2, l3) & R(l3, l4) & R(l4, l2)", "R(l2, R(l4, R(l3, R(l2, l1))))"},
         {"R(l1, l2, l3, l4)", "R(l3, R(l1, l2)) & R(l1, l4)"},
         {"R(l1, l2, P(l3, l4)) & D(l5, l6)", "D(P(l4, R(l3, R(l1, l2))), l5, l6)"},
+        /* a link has its properties once */
+        {"R(L(s, l1), L(l, l2)) & R(l2, l3) & R(l3, l1)", "R(l1, R(l3, R(L(l, l2), L(s, l1))))"},
+        {"R(L(s, l1), l2, l3, l4)", "R(l3, R(L(s, l1), l2)) & R(l1, l4)"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -256,6 +256,37 @@ static void test_loops_alike(void **state)
     assert_true(n_undecided > 10);
 }
 
+/* A part with loops takes as many steps as the search for it, and with one fewer is undecided. */
+static void test_budget_is_exact(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("budget is exact");
+    struct grrl_graph prism = ladder(5, true);
+    unsigned n_long = 0;
+    for (int i = 0; i < 300; i++) {
+        struct grrl_graph moebius = ladder(5, false);
+        struct grrl_graph part = random_part(&random, &moebius, 10);
+        struct grrl_match_plan plans[2];
+        struct grrl_match match;
+        uint8_t map[GRRL_MAX_LINKS];
+        const enum grrl_match_kind mono = GRRL_MATCH_MONOMORPHISM;
+        grrl_match_plan_of(&plans[0], &part, GRRL_ALL_PROPERTIES);
+        grrl_match_plan_of(&plans[1], &prism, GRRL_ALL_PROPERTIES);
+        grrl_match_begin_planned(&match, mono, &plans[0], &plans[1], BIG_BUDGET);
+        enum grrl_status expected = grrl_match_next(&match, map);
+        uint32_t steps = BIG_BUDGET - match.budget;
+        if (steps == 0 || match.kind != mono ||
+            grrl_match_tree(&plans[0], &plans[1], 0, &(uint32_t){0}, NULL) == GRRL_OK)
+            continue;
+        assert_int_equal(grrl_match_find_planned(mono, &plans[0], &plans[1], steps, map), expected);
+        assert_int_equal(grrl_match_find_planned(mono, &plans[0], &plans[1], steps - 1, map),
+                         GRRL_ERR_UNDECIDED);
+        n_long += steps > 8 * GRRL_MAX_LINKS; /* more than the first, short search takes */
+    }
+    print_message("%u long searches\n", n_long);
+    assert_true(n_long > 10);
+}
+
 /* A budget of nothing leaves the answers that need no search. */
 static void test_without_a_budget(void **state)
 {
@@ -321,6 +352,7 @@ int main(void)
         cmocka_unit_test(test_trees),
         cmocka_unit_test(test_near_misses),
         cmocka_unit_test(test_loops_alike),
+        cmocka_unit_test(test_budget_is_exact),
         cmocka_unit_test(test_without_a_budget),
         cmocka_unit_test(test_a_part_stays_a_part),
     };

@@ -134,6 +134,7 @@ static const struct malformed malformed[] = {
     {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
     {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
     {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
+    {"A(f1, 45\xc2\xb0", 0, 10, 1, 10, SYNTAX, "of an action, found the end of the text"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
     {"A(X(f1), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A, found 'X'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},
@@ -241,7 +242,10 @@ static void test_capacity(void **state)
         assert_int_equal(status, capacity < 8 ? GRRL_ERR_FULL : GRRL_OK);
         if (status != GRRL_OK) {
             assert_int_equal(grrl_term_mark(&store), 1);
-            assert_non_null(strstr(error.message, "the term store is full"));
+            char expected[64];
+            (void)snprintf(expected, sizeof expected, "the term store is full: it holds %u nodes",
+                           capacity - 1u);
+            assert_string_equal(error.message, expected);
             assert_int_equal(store.high_water, capacity);
         }
     }
@@ -273,7 +277,15 @@ static void test_symbols(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_int_equal(grrl_term_intern(store, bad[i], strlen(bad[i]), &property),
                          GRRL_ERR_SYNTAX);
-    for (int i = 3; i <= GRRL_MAX_SYMBOLS; i++) {
+    static const char broken[] = "L(gone, f1"; /* takes its new symbol back */
+    static const char whole[] = "L(gone, f1)";
+    grrl_term link;
+    assert_int_equal(grrl_term_parse(store, broken, sizeof broken - 1, &link, NULL),
+                     GRRL_ERR_SYNTAX);
+    assert_int_equal(store->n_symbols, 2);
+    support_assert_prints(store, support_parse(store, whole), whole);
+    assert_int_equal(store->n_symbols, 3);
+    for (int i = 4; i <= GRRL_MAX_SYMBOLS; i++) {
         char name[GRRL_SYMBOL_BYTES];
         int length = snprintf(name, sizeof name, "atom_%d", i);
         assert_int_equal(grrl_term_intern(store, name, (size_t)length, &property), GRRL_OK);
@@ -282,8 +294,8 @@ static void test_symbols(void **state)
     }
     assert_int_equal(grrl_term_intern(store, "more", 4, &property), GRRL_ERR_FULL);
     assert_int_equal(grrl_term_intern(store, "atom", 4, &property), GRRL_ERR_FULL);
-    assert_int_equal(grrl_term_intern(store, "atom_3", 6, &property), GRRL_OK);
-    assert_int_equal(property, 3);
+    assert_int_equal(grrl_term_intern(store, "atom_4", 6, &property), GRRL_OK);
+    assert_int_equal(property, 4);
     grrl_term term;
     struct grrl_term_error error;
     assert_int_equal(grrl_term_parse(store, "L(s,more,f1)", 12, &term, &error), GRRL_ERR_FULL);
