@@ -4,6 +4,7 @@
 
 #include "grrl/base/config.h"
 #include "grrl/base/random.h"
+#include "grrl/base/settling.h"
 #include "grrl/base/status.h"
 /* structures */
 #include "grrl/structure/canonical.h"
