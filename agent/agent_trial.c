@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "agent_internal.h"
-
 #include "grrl/base/settling.h"
 
 /* Between answers to frames that need none: at the camera's rate nobody waits for one. */

@@ -24,6 +24,7 @@ refused 2 "$AGENT" --gamma 1
 refused 2 "$AGENT" --z 1001
 refused 2 "$AGENT" --beta nan
 refused 2 "$AGENT" --noise 0
+refused 2 "$AGENT" --noise 1e-60
 refused 2 "$AGENT" --seed -1
 refused 2 "$AGENT" --experiences 0
 refused 2 "$AGENT" --experiences 7000000
