@@ -34,6 +34,8 @@ refused 2 "$AGENT" --tracker-timeout 0
 refused 2 "$AGENT" --tracker-timeout soon
 refused 2 "$AGENT" extra
 refused 2 "$SIM"
+refused 2 "$SIM" --object RR --object RRR
+grep -q -e '--object: given twice' err.txt || fail "--object twice: $(cat err.txt)"
 refused 2 "$SIM" --object RXR
 refused 2 "$SIM" --object 'R(l1, l1)'
 refused 2 "$SIM" --object RR --trials 0
