@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "agent_internal.h"
-
-/* Frames at rest that settle a scene whose sender does not tell the phase. */
-enum { SETTLING_FRAMES = 10 };
+#include "grrl/base/settling.h"
 
 /* Between answers to frames that need none: at the camera's rate nobody waits for one. */
 enum { RESEND_US = 50000 };
@@ -206,7 +204,7 @@ static int8_t phase_of(struct grrl_agent *agent, const grrl_points_t *points, in
     if (moving)
         return GRRL_POINTS_T_PUSHING;
     agent->rest_frames++;
-    return agent->rest_frames >= SETTLING_FRAMES ? GRRL_POINTS_T_SETTLED : GRRL_POINTS_T_REST;
+    return agent->rest_frames >= GRRL_SETTLING_FRAMES ? GRRL_POINTS_T_SETTLED : GRRL_POINTS_T_REST;
 }
 
 /*

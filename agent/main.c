@@ -165,14 +165,9 @@ static int run_agent(struct run *run)
 int main(int argc, char **argv)
 {
     static struct run run;
-    switch (grrl_agent_options_parse(argc, argv, &run.options)) {
-    case GRRL_OPTIONS_DONE:
-        return EXIT_SUCCESS;
-    case GRRL_OPTIONS_BAD:
-        return 2;
-    case GRRL_OPTIONS_RUN:
-        break;
-    }
+    enum grrl_options_result parsed = grrl_agent_options_parse(argc, argv, &run.options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     grrl_process_catch_signals();
     int status = run_agent(&run);
     if (run.trials > 0 && !run.options.quiet)

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/options.h"
 #include "grrl/learner/learner.h"
 #include "grrl/policies.h"
 
@@ -20,8 +21,6 @@ struct grrl_agent_options {
     bool quiet;
     bool explain;
 };
-
-enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };
 
 /* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
 enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,

@@ -16,7 +16,7 @@
 
 #include "grrl/grrl.h"
 
-enum { EXIT_FINE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2 };
+enum { EXIT_FINE = 0, EXIT_INPUT = 1 };
 enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
 
 /* Links from this length on are called large; as for the learner. */
@@ -323,12 +323,8 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
 int main(int argc, char **argv)
 {
     struct grrl_perceive_options options;
-    switch (grrl_perceive_options_parse(argc, argv, &options)) {
-    case GRRL_OPTIONS_BAD:
-        return EXIT_USAGE;
-    case GRRL_OPTIONS_DONE:
-        return EXIT_FINE;
-    default:
-        return options.handle != NULL ? perceive_handle(&options) : perceive_tracks(&options);
-    }
+    enum grrl_options_result parsed = grrl_perceive_options_parse(argc, argv, &options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
+    return options.handle != NULL ? perceive_handle(&options) : perceive_tracks(&options);
 }

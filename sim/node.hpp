@@ -76,7 +76,7 @@ public:
 private:
     enum class Stage {
         OFFER,    /* a trial is announced, the agent has not agreed yet */
-        RESTING,  /* ten frames at rest */
+        RESTING,  /* until the scene has settled */
         DECIDING, /* settled: model, judgement, next push */
         PUSHING,
         ENDED, /* the agent has not agreed yet */

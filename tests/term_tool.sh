@@ -18,12 +18,6 @@ expect() {
     fi
 }
 
-usage='usage: grrl-term parse TERM
-       grrl-term graph [--dot] TERM
-       grrl-term canonical [--ignore-properties] TERM
-       grrl-term match [--all] A B
-       grrl-term --help | --version'
-
 expect 0 "grrl-term $version" --version
 
 # parse
@@ -107,18 +101,25 @@ expect 1 'grrl-term: 1:1: expected a link or one of R, P, D, A, found '"'9x'"'
   ^' match l1 9x
 
 # usage
-expect 2 "grrl-term: a command is missing
-$usage"
-expect 2 "grrl-term: unknown command pares
-$usage" pares l1
-expect 2 "grrl-term: unknown option --dot
-$usage" parse --dot l1
-expect 2 "grrl-term: too few terms for match
-$usage" match l1
-expect 2 "grrl-term: one term too many: l2
-$usage" parse l1 l2
+try='Try grrl-term --help'
+expect 2 "grrl-term: the command is parse, graph, canonical or match
+$try"
+expect 2 "grrl-term: the command is parse, graph, canonical or match
+$try" pares l1
+expect 2 "grrl-term: --dot goes with graph
+$try" parse --dot l1
+expect 2 "grrl-term: --ignore-properties goes with canonical
+$try" graph l1 --ignore-properties
+expect 2 "grrl-term: --all goes with match
+$try" --all canonical l1
+expect 2 "grrl-term: too few terms
+$try" match l1
+expect 2 "grrl-term: one term too many
+$try" parse l1 l2
+expect 2 "grrl-term: l3: one term too many
+$try" match l1 l2 l3
 expect 2 "grrl-term: only one term can come from standard input
-$usage" match - -
+$try" match - -
 
 help=$("$tool" --help) || failures=$((failures + 1))
 for word in parse graph canonical match --dot --ignore-properties --all 'Exit status'; do

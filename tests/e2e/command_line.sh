@@ -28,6 +28,7 @@ refused 2 "$AGENT" --policy paper --gamma 1
 refused 2 "$AGENT" --policy paper --z 1001
 refused 2 "$AGENT" --policy paper --beta nan
 refused 2 "$AGENT" --noise 0
+refused 2 "$AGENT" --noise 1e-60
 refused 2 "$AGENT" --seed -1
 refused 2 "$AGENT" --experiences 0
 refused 2 "$AGENT" --experiences 7000000
@@ -37,6 +38,8 @@ refused 2 "$AGENT" --tracker-timeout 0
 refused 2 "$AGENT" --tracker-timeout soon
 refused 2 "$AGENT" extra
 refused 2 "$SIM"
+refused 2 "$SIM" --object RR --object RRR
+grep -q -e '--object: given twice' err.txt || fail "--object twice: $(cat err.txt)"
 refused 2 "$SIM" --object RXR
 refused 2 "$SIM" --object 'R(l1, l1)'
 refused 2 "$SIM" --object RR --trials 0

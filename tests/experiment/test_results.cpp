@@ -40,11 +40,11 @@ void assert_near(double a, double b)
 
 void the_interval_is_students(void **)
 {
-    Estimate e = estimate({1.0, 2.0, 3.0, 4.0}); /* s = 1.29099, t(3) = 3.182 */
+    Mean e = mean_of({1.0, 2.0, 3.0, 4.0}); /* s = 1.29099, t(3) = 3.182 */
     assert_near(e.mean, 2.5);
     assert_near(e.half, 3.182 * 1.29099 / 2.0);
-    assert_true(estimate({7.0}).half < 0.0);
-    assert_near(estimate({7.0}).low(), 7.0);
+    assert_true(mean_of({7.0}).half < 0.0);
+    assert_near(mean_of({7.0}).low(), 7.0);
     assert_near(t_quantile(30), 2.042);
     assert_near(t_quantile(40), 2.0211);
     assert_near(t_quantile(100), 1.9840);
@@ -52,7 +52,7 @@ void the_interval_is_students(void **)
 
 void an_experiment_counts_as_one_number(void **)
 {
-    Estimate e = pushes(two_experiments(), 1, 2); /* 1.5 and 3.5 */
+    Mean e = pushes(two_experiments(), 1, 2); /* 1.5 and 3.5 */
     assert_int_equal(e.n, 2);
     assert_near(e.mean, 2.5);
     assert_near(e.half, 12.706 * std::sqrt(2.0) / std::sqrt(2.0));

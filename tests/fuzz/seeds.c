@@ -12,12 +12,13 @@
 #include <sys/stat.h>
 
 #include "controller.h"
+#include "grrl/base/settling.h"
 #include "grrl/learner/learner.h"
 #include "link.h"
 #include "policy_memory.h"
 #include "wire.h"
 
-enum { POINTS = 12, PER_LINK = 6, PATH_BYTES = 1024, REST = 10, TURNS = 12, PUSH_FRAMES = 2 };
+enum { POINTS = 12, PER_LINK = 6, PATH_BYTES = 1024, TURNS = 12, PUSH_FRAMES = 2 };
 
 static const char *folder;
 static struct grrl_wire_points points;
@@ -185,7 +186,7 @@ static void write_log(void)
     points.message.seq = 0;
     points.message.trial_id = 1;
     log_trial(log, -1, GRRL_TRIAL_T_RUNNING);
-    log_frames(log, REST, GRRL_POINTS_T_SETTLED);
+    log_frames(log, GRRL_SETTLING_FRAMES, GRRL_POINTS_T_SETTLED);
     for (int32_t push = 1; push <= PUSH_FRAMES; push++) {
         const grrl_decision_t decision = {
             .session_id = 1, .trial_id = 1, .cmd_seq = push, .link_number = 1, .source_index = -1};

@@ -74,10 +74,11 @@ expect 0 'Usage: grrl-bridge' "$BRIDGE" --help
 expect 0 'grrl-bridge [0-9]' "$BRIDGE" --version
 expect 2 'serial is needed' "$BRIDGE"
 expect 2 'a name of 1 to 15' "$BRIDGE" --serial x --policy much-longer-than-a-name
-expect 2 'must be a number from 0' "$BRIDGE" --serial x --seed -1
+expect 2 'must be a whole number from 0' "$BRIDGE" --serial x --seed -1
 expect 2 'no arguments' "$BRIDGE" --serial x y
+expect 2 'serial: given twice' "$BRIDGE" --serial x --serial y
 expect 1 'start the controller first' "$BRIDGE" --serial ./none.socket --lcm-url "$url"
 : >file
 expect 1 'file' "$BRIDGE" --serial ./file --lcm-url "$url"
-expect 2 'must be a number' "$CONTROLLER" --socket x --damage few
+expect 2 'must be a whole number' "$CONTROLLER" --socket x --damage few
 expect 2 'socket is needed' "$CONTROLLER"

@@ -25,7 +25,7 @@ static void move_two(struct grrl_vec2 apart, float turn, float together_turn)
         struct grrl_frame frame = world_frame(&world);
         grrl_perception_observe(&perception, &frame, true);
     }
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
 }
 
@@ -39,7 +39,7 @@ static void start_two(uint64_t seed)
     (void)world_add_link(&world, -1, 0);
     world.root[1].p = (struct grrl_vec2){0.0f, 0.05f};
     world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
 }
 
@@ -78,7 +78,7 @@ static void two_objects_at_rest_are_two_bodies_and_no_more_is_known(void **state
     world_add_chain(&world, "R", -0.5f, -0.3f);
     world_add_chain(&world, "R", 0.3f, 0.3f);
     world_add_background(&world, 10);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
     assert_int_equal(grrl_perception_pair(&perception, 0, 1, &pair), GRRL_OK);

@@ -1,6 +1,7 @@
 /* Observers, and an agent with a tracker and a robot that know nothing of trials. */
 #include <algorithm>
 
+#include "grrl/base/settling.h"
 #include "harness.hpp"
 
 using namespace harness;
@@ -208,7 +209,7 @@ private:
         push.end_m = {static_cast<double>(c.end[0]), static_cast<double>(c.end[1])};
         push.travel_m = static_cast<double>(c.travel);
         pushes_++;
-        assert_true(rest_frames_ >= 10); /* enough to average */
+        assert_true(rest_frames_ >= GRRL_SETTLING_FRAMES); /* enough to average */
         rest_frames_ = 0;
         moving_ = world_.begin_push(push).empty();
         report(moving_ ? GRRL_PUSH_STATUS_T_MOVING : GRRL_PUSH_STATUS_T_REFUSED,

@@ -7,6 +7,7 @@
 #include "grrl/base/io.h"
 #include "grrl/base/joint_type.h"
 #include "grrl/base/random.h"
+#include "grrl/base/settling.h"
 #include "grrl/base/status.h"
 
 #include "grrl/perception/noise.h"

@@ -1,15 +1,16 @@
+/* trial.cpp: the course of a trial, and what is counted in it. */
 #include "trial.hpp"
 
 #include <time.h>
 
-#include <memory>
-
+#include "adapter.hpp"
 #include "baseline.hpp"
-#include "belief.hpp"
+#include "grrl/base/settling.h"
 #include "grrl/learner/grounding.h"
 #include "grrl/perception/perception.h"
+#include "verdict.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 using grrl_sim::Frame;
@@ -19,7 +20,7 @@ using grrl_sim::World;
 namespace
 {
 
-enum { REST_FRAMES = 10, SIX = 6 };
+enum { SIX = 6 };
 constexpr uint64_t push_stream = 99; /* of random numbers: which body, which direction */
 
 /* Of this thread: other work on the machine is no cost of perception. */
@@ -37,8 +38,8 @@ public:
     Bench(const ObjectSpec &object, const TrialParams &params, uint64_t seed);
 
     bool push(); /* false: nothing to push */
-    Belief ours() const;
-    Belief baseline() const { return baseline_.believe(); }
+    Estimate ours() const { return estimate_of(*grrl_perception_model(perception_.get())); }
+    Estimate baseline() const { return baseline_.estimate(); }
     bool every_joint_moved_enough() const;
     const World &world() const { return world_; }
     double perception_s() const { return perception_s_; }
@@ -53,20 +54,9 @@ private:
     grrl_grounding_config grounding_;
     grrl_random random_;
     Frame frame_;
+    grrl_sim::FrameArrays arrays_;
     double perception_s_ = 0.0;
 };
-
-grrl_sim::PushCommand command_of(const grrl_push &push)
-{
-    grrl_sim::PushCommand command;
-    command.start_m = {static_cast<double>(push.start_m.x), static_cast<double>(push.start_m.y)};
-    command.end_m = {static_cast<double>(push.end_m.x), static_cast<double>(push.end_m.y)};
-    command.speed_m_s = static_cast<double>(push.speed_m_s);
-    command.force_limit_n = static_cast<double>(push.force_n);
-    command.travel_m = static_cast<double>(push.travel_m);
-    command.timeout_s = static_cast<double>(push.timeout_s);
-    return command;
-}
 
 Bench::Bench(const ObjectSpec &object, const TrialParams &params, uint64_t seed)
     : world_(object, params.world, seed), baseline_(world_.tracker().feature_count())
@@ -82,18 +72,8 @@ Bench::Bench(const ObjectSpec &object, const TrialParams &params, uint64_t seed)
 
 void Bench::observe(bool pushing)
 {
-    int32_t id[GRRL_MAX_FEATURES];
-    float x[GRRL_MAX_FEATURES];
-    float y[GRRL_MAX_FEATURES];
-    uint32_t n = 0;
     world_.observe(frame_);
-    for (const grrl_sim::TrackedFeature &feature : frame_.features) {
-        id[n] = static_cast<int32_t>(feature.id);
-        x[n] = static_cast<float>(feature.x_m);
-        y[n] = static_cast<float>(feature.y_m);
-        n++;
-    }
-    grrl_frame frame{n, id, x, y};
+    grrl_frame frame = arrays_.frame_of(frame_);
     const double start = cpu_s();
     grrl_perception_observe(perception_.get(), &frame, pushing);
     perception_s_ += cpu_s() - start;
@@ -103,7 +83,7 @@ void Bench::observe(bool pushing)
 void Bench::rest()
 {
     std::vector<Frame> frames;
-    for (int i = 0; i < REST_FRAMES; i++) {
+    for (int i = 0; i < GRRL_SETTLING_FRAMES; i++) {
         (void)world_.step_frame();
         observe(false);
         frames.push_back(frame_);
@@ -124,32 +104,11 @@ bool Bench::push()
     auto direction = static_cast<uint8_t>(grrl_random_below(&random_, GRRL_DIRECTIONS));
     if (grrl_grounding_push(model, &grounding_, body, direction, &push) != GRRL_OK)
         return false;
-    if (world_.begin_push(command_of(push)).empty())
+    if (world_.begin_push(grrl_sim::command_of(push)).empty())
         while (world_.step_frame())
             observe(true);
     rest();
     return true;
-}
-
-Belief Bench::ours() const
-{
-    const grrl_model *model = grrl_perception_model(perception_.get());
-    Belief belief;
-    belief.n_bodies = model->n_bodies;
-    belief.body_of.assign(static_cast<size_t>(world_.tracker().feature_count()), unseen);
-    for (int i = 0; i < model->n_features; i++) {
-        auto id = static_cast<size_t>(model->feature_id[i]);
-        if (id < belief.body_of.size())
-            belief.body_of[id] = model->feature_body[i] < model->n_bodies
-                                     ? static_cast<int>(model->feature_body[i])
-                                     : static_cast<int>(no_body);
-    }
-    for (int i = 0; i < model->n_joints; i++) {
-        const grrl_joint &joint = model->joint[i];
-        belief.joints.push_back({joint.a, joint.b, static_cast<grrl_joint_type>(joint.type),
-                                 static_cast<double>(joint.probability)});
-    }
-    return belief;
 }
 
 bool Bench::every_joint_moved_enough() const
@@ -240,4 +199,4 @@ TrialResult run_trial(const ObjectSpec &object, const TrialParams &params, uint6
     return result;
 }
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception

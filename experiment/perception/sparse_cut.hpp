@@ -4,13 +4,13 @@
  * The phases of Stoer and Wagner's minimum cut (1997) propose cuts; the plain minimum would cut off
  * single vertices, so that the one with the fewest edges for its possible ones is taken.
  */
-#ifndef GRRL_EVALUATE_SPARSE_CUT_HPP
-#define GRRL_EVALUATE_SPARSE_CUT_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_SPARSE_CUT_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_SPARSE_CUT_HPP
 
 #include <cstddef>
 #include <vector>
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 struct SparseCut {
@@ -22,6 +22,6 @@ struct SparseCut {
  * cubic in the vertices. */
 SparseCut sparse_cut(std::vector<std::vector<int>> edges, std::size_t least);
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif

@@ -4,14 +4,14 @@
  * The library and the baseline see the same frames. The pushes are those of the random policy: any
  * believed body, any of the six directions.
  */
-#ifndef GRRL_EVALUATE_TRIAL_HPP
-#define GRRL_EVALUATE_TRIAL_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_TRIAL_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_TRIAL_HPP
 
 #include <cstdint>
 
 #include "world.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 enum Method { OURS, BASELINE, METHODS };
@@ -56,6 +56,6 @@ constexpr double enough_m = 0.010;
 
 TrialResult run_trial(const grrl_sim::ObjectSpec &object, const TrialParams &params, uint64_t seed);
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif

@@ -9,16 +9,16 @@
  * its centre, a translation without rotation is a prismatic joint. It has no idea of noise, and is
  * sure of all it says.
  *
- * Order of calls: one rest after the other, then believe at any time.
+ * Order of calls: one rest after the other, then estimate at any time.
  */
-#ifndef GRRL_EVALUATE_BASELINE_HPP
-#define GRRL_EVALUATE_BASELINE_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_BASELINE_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_BASELINE_HPP
 
 #include <vector>
 
-#include "belief.hpp"
+#include "truth.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 struct BaselineParams {
@@ -37,7 +37,7 @@ public:
     /* The frames of one rest; their medians are one picture. */
     void rest(const std::vector<grrl_sim::Frame> &frames);
 
-    Belief believe() const;
+    Estimate estimate() const;
 
 private:
     struct Place {
@@ -54,13 +54,13 @@ private:
                 grrl_sim::Pose &pose) const;
     double distance_to(const std::vector<size_t> &body, grrl_sim::Vec2 point) const;
     bool relate(const std::vector<size_t> &a, const std::vector<size_t> &b,
-                BelievedJoint &joint) const;
+                EstimatedJoint &joint) const;
 
     size_t features_;
     BaselineParams params_;
     std::vector<Picture> pictures_;
 };
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif

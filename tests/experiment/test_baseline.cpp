@@ -9,10 +9,12 @@ extern "C" {
 #include <cmocka.h>
 }
 
-#include "baseline.hpp"
-#include "sparse_cut.hpp"
+#include "perception/baseline.hpp"
+#include "perception/sparse_cut.hpp"
+#include "perception/verdict.hpp"
 
-using namespace grrl_evaluate;
+using namespace grrl_experiment;
+using namespace grrl_experiment::perception;
 using grrl_sim::Frame;
 using grrl_sim::Vec2;
 using grrl_sim::World;
@@ -54,8 +56,8 @@ void test_hinge(void **)
     World world(*grrl_sim::object_from_text("D(lb, R(l1, l2))").value, params, 3);
     Baseline baseline(world.tracker().feature_count());
     baseline.rest(look(world));
-    Belief nothing = baseline.believe();
-    assert_int_equal(nothing.n_bodies, 0);
+    Estimate nothing = baseline.estimate();
+    assert_int_equal(nothing.links, 0);
     Verdict verdict = judge(nothing, world);
     assert_true(verdict.missed_joint && !verdict.wrong_joint && !verdict.exact);
     for (int i = 0; i < 12; i++) {
@@ -70,20 +72,20 @@ void test_hinge(void **)
         baseline.rest(look(world));
     }
     assert_true(world.true_joint_range(0) > grrl_sim::radians(10.0));
-    Belief belief = baseline.believe();
-    assert_int_equal(belief.joints.size(), 1);
-    assert_int_equal(belief.joints[0].type, GRRL_REVOLUTE);
-    verdict = judge(belief, world);
+    Estimate estimate = baseline.estimate();
+    assert_int_equal(estimate.joints.size(), 1);
+    assert_int_equal(estimate.joints[0].type, GRRL_REVOLUTE);
+    verdict = judge(estimate, world);
     assert_true(verdict.exact && !verdict.wrong_joint && !verdict.missed_joint);
     assert_int_equal(verdict.sure_and_right, 1);
 
-    belief.joints[0].type = GRRL_PRISMATIC;
-    verdict = judge(belief, world);
+    estimate.joints[0].type = GRRL_PRISMATIC;
+    verdict = judge(estimate, world);
     assert_true(verdict.wrong_joint && verdict.missed_joint && !verdict.exact);
     assert_int_equal(verdict.sure, 1);
     assert_int_equal(verdict.sure_and_right, 0);
-    belief.body_of[0] = belief.n_bodies++; /* one feature torn off */
-    assert_true(judge(belief, world).false_split);
+    estimate.features[0].second = estimate.links++; /* one feature torn off */
+    assert_true(judge(estimate, world).false_split);
 }
 
 } // namespace

@@ -1,8 +1,9 @@
+/* objects.cpp: the list of objects, and the choice among them. */
 #include "objects.hpp"
 
 #include <cstdio>
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 using grrl_sim::ObjectSpec;
@@ -108,4 +109,4 @@ Result<std::vector<NamedObject>> select_objects(const std::string &names)
     return Result<std::vector<NamedObject>>::good(std::move(objects));
 }
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception

@@ -1,14 +1,15 @@
 /* options.hpp: the command line of grrl-evaluate. */
-#ifndef GRRL_EVALUATE_OPTIONS_HPP
-#define GRRL_EVALUATE_OPTIONS_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_OPTIONS_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_OPTIONS_HPP
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "trial.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 struct Options {
@@ -23,11 +24,8 @@ struct Options {
     bool quiet = false;
 };
 
-enum class OptionsResult { RUN, DONE, BAD };
+grrl_options_result parse_options(int argc, char **argv, Options &options);
 
-/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
-OptionsResult parse_options(int argc, char **argv, Options &options);
-
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif

@@ -1,8 +1,9 @@
+/* sparse_cut.cpp: Stoer and Wagner's phases, each of which proposes a cut. */
 #include "sparse_cut.hpp"
 
 #include <algorithm>
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 namespace
@@ -65,4 +66,4 @@ SparseCut sparse_cut(std::vector<std::vector<int>> edges, std::size_t least)
     return best;
 }
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception

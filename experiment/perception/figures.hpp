@@ -1,14 +1,15 @@
 /* figures.hpp: what many trials add up to, as a table, as CSV and as a picture. */
-#ifndef GRRL_EVALUATE_FIGURES_HPP
-#define GRRL_EVALUATE_FIGURES_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
 
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "statistics.hpp"
 #include "trial.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 /* The trials of one object at one noise level, or of all objects together. */
@@ -32,9 +33,8 @@ struct Figures {
 };
 
 struct Pushes {
-    double mean;
-    double half_width; /* of the 95% confidence interval */
-    double at_cap;     /* percent */
+    Mean count;    /* over the trials */
+    double at_cap; /* percent */
     double update_ms;
 };
 
@@ -45,9 +45,9 @@ Pushes pushes(const Group &group);
 void print_table(std::FILE *file, const std::vector<Group> &groups);
 void print_csv(std::FILE *file, const std::vector<Group> &groups);
 
-/* By gnuplot; empty, or what went wrong. */
-std::string draw_svg(const std::string &path, const std::vector<Group> &groups);
+/* False: gnuplot is not there or fails. */
+bool draw_svg(const std::string &path, const std::vector<Group> &groups);
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif

@@ -5,54 +5,22 @@
  */
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <mutex>
 #include <thread>
-#include <unistd.h>
 
 #include "figures.hpp"
 #include "objects.hpp"
 #include "options.hpp"
+#include "progress.hpp"
 
-using namespace grrl_evaluate;
+using namespace grrl_experiment::perception;
+using grrl_experiment::Progress;
 
 namespace
 {
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
-
-/* How far a run is, on standard error. */
-class Progress
-{
-public:
-    Progress(size_t trials, bool quiet) : trials_(trials), quiet_(quiet) {}
-
-    void trial_done()
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        done_++;
-        double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-        if (quiet_ || (seconds - shown_ < (terminal_ ? 1.0 : 20.0) && done_ != trials_))
-            return;
-        shown_ = seconds;
-        double left = seconds / static_cast<double>(done_) * static_cast<double>(trials_ - done_);
-        (void)std::fprintf(stderr, "%s%zu of %zu trials, %.0f s, about %.0f s left   %s",
-                           terminal_ ? "\r" : "", done_, trials_, seconds, left,
-                           terminal_ && done_ != trials_ ? "" : "\n");
-        (void)std::fflush(stderr);
-    }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    size_t trials_;
-    bool quiet_;
-    bool terminal_ = isatty(STDERR_FILENO) != 0; /* one line that changes, not many */
-    std::mutex mutex_;
-    size_t done_ = 0;
-    double shown_ = 0.0;
-    Clock::time_point start_ = Clock::now();
-};
 
 /* All trials of all groups, by as many threads as there are jobs; a trial depends on its seed
  * alone. */
@@ -60,16 +28,23 @@ void run_all(const std::vector<NamedObject> &objects, const Options &options,
              std::vector<Group> &groups)
 {
     size_t trials = static_cast<size_t>(options.trials);
-    Progress progress(groups.size() * trials, options.quiet);
+    auto all = static_cast<int64_t>(groups.size() * trials);
+    Progress progress(all, all, "trials");
+    std::mutex mutex; /* of progress */
     std::atomic<size_t> next{0};
     auto work = [&] {
         for (size_t i = next++; i < groups.size() * trials; i = next++) {
             Group &group = groups[i / trials];
             TrialParams params = options.trial;
             params.world.tracker.noise_sigma_m *= group.noise;
-            group.trials[i % trials] = run_trial(objects[i / trials % objects.size()].spec, params,
-                                                 options.seed + i % trials);
-            progress.trial_done();
+            TrialResult &result = group.trials[i % trials];
+            result = run_trial(objects[i / trials % objects.size()].spec, params,
+                               options.seed + i % trials);
+            std::lock_guard<std::mutex> lock(mutex);
+            progress.trial(result.pushes);
+            progress.part();
+            if (!options.quiet)
+                progress.show();
         }
     };
     std::vector<std::thread> threads;
@@ -78,6 +53,8 @@ void run_all(const std::vector<NamedObject> &objects, const Options &options,
     work();
     for (std::thread &thread : threads)
         thread.join();
+    if (!options.quiet)
+        progress.finish();
 }
 
 /* Each noise level over all objects, after the groups of single objects. */
@@ -114,10 +91,14 @@ int report(const Options &options, std::vector<Group> groups)
             groups.push_back(std::move(all));
     print_table(stdout, groups);
     bool good = options.csv.empty() || write_csv(options.csv, groups);
-    std::string problem = options.svg.empty() ? "" : draw_svg(options.svg, groups);
-    if (!problem.empty())
-        (void)std::fprintf(stderr, "grrl-evaluate: %s\n", problem.c_str());
-    return good && problem.empty() ? EXIT_FINE : EXIT_TROUBLE;
+    bool drawn = options.svg.empty() || draw_svg(options.svg, groups);
+    if (!drawn)
+        (void)std::fprintf(
+            stderr,
+            "grrl-evaluate: %s: gnuplot failed; is it installed, and can the file be "
+            "written?\n",
+            options.svg.c_str());
+    return good && drawn ? EXIT_FINE : EXIT_TROUBLE;
 }
 
 } // namespace
@@ -125,9 +106,9 @@ int report(const Options &options, std::vector<Group> groups)
 int main(int argc, char **argv)
 {
     Options options;
-    OptionsResult parsed = parse_options(argc, argv, options);
-    if (parsed != OptionsResult::RUN)
-        return parsed == OptionsResult::DONE ? EXIT_FINE : EXIT_USAGE;
+    grrl_options_result parsed = parse_options(argc, argv, options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     grrl_sim::Result<std::vector<NamedObject>> objects = select_objects(options.objects);
     if (!objects) {
         (void)std::fprintf(stderr, "grrl-evaluate: --objects: %s\n", objects.error.c_str());

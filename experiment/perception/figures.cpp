@@ -1,10 +1,12 @@
+/* figures.cpp: sums, percentages and their tables. */
 #include "figures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
-namespace grrl_evaluate
+#include "files.hpp"
+
+namespace grrl_experiment::perception
 {
 
 namespace
@@ -32,11 +34,6 @@ void csv_counts(std::FILE *file, const Tally &t)
         (void)std::fprintf(file, ",%lld", static_cast<long long>(count));
 }
 
-std::string quoted(const std::string &text)
-{
-    return text.find(',') == std::string::npos ? text : "\"" + text + "\"";
-}
-
 } // namespace
 
 Tally sum(const Group &group, Method method)
@@ -62,20 +59,16 @@ Figures figures(const Tally &tally, size_t trials)
 
 Pushes pushes(const Group &group)
 {
-    double n = static_cast<double>(group.trials.size());
-    double mean = 0.0;
-    double squares = 0.0;
+    std::vector<double> counts;
+    std::vector<double> ms;
     int64_t at_cap = 0;
-    double ms = 0.0;
     for (const TrialResult &trial : group.trials) {
-        mean += trial.pushes / n;
+        counts.push_back(trial.pushes);
+        ms.push_back(trial.update_ms);
         at_cap += trial.at_cap;
-        ms += trial.update_ms / n;
     }
-    for (const TrialResult &trial : group.trials)
-        squares += (trial.pushes - mean) * (trial.pushes - mean);
-    double half = n > 1.0 ? 1.96 * std::sqrt(squares / (n - 1.0) / n) : 0.0;
-    return {mean, half, percent(at_cap, static_cast<int64_t>(group.trials.size())), ms};
+    return {mean_of(counts), percent(at_cap, static_cast<int64_t>(group.trials.size())),
+            mean_of(ms).mean};
 }
 
 static void print_group(std::FILE *file, const Group &group, int width)
@@ -90,8 +83,8 @@ static void print_group(std::FILE *file, const Group &group, int width)
                            cell(f.exact_in_six, 0).c_str(), cell(f.exact_when_moved, 0).c_str());
         if (m == OURS) {
             Pushes p = pushes(group);
-            (void)std::fprintf(file, " %6.1f +- %4.1f %5.1f %6.2f", p.mean, p.half_width, p.at_cap,
-                               p.update_ms);
+            (void)std::fprintf(file, " %6.1f +- %4s %5.1f %6.2f", p.count.mean,
+                               cell(p.count.half, 1).c_str(), p.at_cap, p.update_ms);
         }
         (void)std::fputc('\n', file);
     }
@@ -123,9 +116,10 @@ void print_csv(std::FILE *file, const std::vector<Group> &groups)
         for (int m = OURS; m < METHODS; m++) {
             Tally tally = sum(group, static_cast<Method>(m));
             Figures f = figures(tally, group.trials.size());
-            (void)std::fprintf(file, "%s,%g,%s,%zu,%.3f,%.3f,%.3f,%.3f",
-                               quoted(group.object).c_str(), group.noise, method_names[m],
-                               group.trials.size(), p.mean, p.half_width, p.at_cap, p.update_ms);
+            (void)std::fprintf(
+                file, "%s,%g,%s,%zu,%.3f,%s,%.3f,%.3f", csv_field(group.object).c_str(),
+                group.noise, method_names[m], group.trials.size(), p.count.mean,
+                p.count.half < 0.0 ? "" : cell(p.count.half, 3).c_str(), p.at_cap, p.update_ms);
             for (double figure : {f.wrong, f.wrong_joint, f.false_split, f.missed, f.misplaced,
                                   f.calibration, f.exact_in_six, f.exact_when_moved, f.ended_exact})
                 (void)std::fprintf(file, figure < 0.0 ? "," : ",%.3f", figure);
@@ -135,4 +129,4 @@ void print_csv(std::FILE *file, const std::vector<Group> &groups)
     }
 }
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception

@@ -1,3 +1,4 @@
+/* baseline.cpp: clusters of features, their motion, and the joints between them. */
 #include "baseline.hpp"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 
 #include "sparse_cut.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 using grrl_sim::Frame;
@@ -176,7 +177,7 @@ double Baseline::distance_to(const std::vector<size_t> &body, Vec2 point) const
 /* The joint between two bodies by the two poses that differ most in rotation, or, if they never
  * turned, in place. */
 bool Baseline::relate(const std::vector<size_t> &a, const std::vector<size_t> &b,
-                      BelievedJoint &joint) const
+                      EstimatedJoint &joint) const
 {
     Pose greatest;
     double slide = 0.0;
@@ -210,31 +211,31 @@ bool Baseline::relate(const std::vector<size_t> &a, const std::vector<size_t> &b
     return slide > params_.slide_m && gap < params_.near_m;
 }
 
-Belief Baseline::believe() const
+Estimate Baseline::estimate() const
 {
-    Belief belief;
-    belief.body_of.assign(features_, no_body);
+    Estimate estimate;
+    std::vector<int> body_of(features_, no_link);
     std::vector<std::vector<size_t>> bodies;
     for (std::vector<size_t> &component : clusters()) {
         if (!moved(component))
             continue;
         for (size_t id : component)
-            belief.body_of[id] = belief.n_bodies;
-        belief.n_bodies++;
+            body_of[id] = estimate.links;
+        estimate.links++;
         bodies.push_back(std::move(component));
     }
     for (size_t id = 0; id < features_; id++)
-        if (std::none_of(pictures_.begin(), pictures_.end(),
-                         [id](const Picture &picture) { return picture[id].seen; }))
-            belief.body_of[id] = unseen;
-    for (int a = 0; a < belief.n_bodies; a++) {
-        for (int b = a + 1; b < belief.n_bodies; b++) {
-            BelievedJoint joint{a, b, GRRL_REVOLUTE, 0.0};
+        if (std::any_of(pictures_.begin(), pictures_.end(),
+                        [id](const Picture &picture) { return picture[id].seen; }))
+            estimate.features.push_back({static_cast<int32_t>(id), body_of[id]});
+    for (int a = 0; a < estimate.links; a++) {
+        for (int b = a + 1; b < estimate.links; b++) {
+            EstimatedJoint joint{a, b, GRRL_REVOLUTE, 0.0};
             if (relate(bodies[static_cast<size_t>(a)], bodies[static_cast<size_t>(b)], joint))
-                belief.joints.push_back(joint);
+                estimate.joints.push_back(joint);
         }
     }
-    return belief;
+    return estimate;
 }
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception

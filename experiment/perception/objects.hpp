@@ -1,13 +1,13 @@
 /* objects.hpp: what perception is measured on, unless the user names other objects. */
-#ifndef GRRL_EVALUATE_OBJECTS_HPP
-#define GRRL_EVALUATE_OBJECTS_HPP
+#ifndef GRRL_EXPERIMENT_PERCEPTION_OBJECTS_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_OBJECTS_HPP
 
 #include <string>
 #include <vector>
 
 #include "object.hpp"
 
-namespace grrl_evaluate
+namespace grrl_experiment::perception
 {
 
 struct NamedObject {
@@ -22,6 +22,6 @@ grrl_sim::Result<std::vector<NamedObject>> select_objects(const std::string &nam
 /* The names of the list, for --help. */
 std::string object_names();
 
-} // namespace grrl_evaluate
+} // namespace grrl_experiment::perception
 
 #endif
