@@ -1,3 +1,4 @@
+/* clairvoyant.cpp: tries every push in a copy of the world, and takes the best. */
 #include "clairvoyant.hpp"
 
 #include <algorithm>

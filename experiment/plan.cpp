@@ -1,3 +1,4 @@
+/* plan.cpp: which curves a figure or a command line asks for. */
 #include "plan.hpp"
 
 #include "options.hpp"
