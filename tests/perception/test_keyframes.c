@@ -511,6 +511,20 @@ static void tracks_at_capacity(void **state)
     assert_int_equal(scene.counts.overflow, 40);
     show(1, 0.0, false);
     assert_int_equal(scene.counts.overflow, 40);
+    /* one frame of a rest is enough to be remembered by */
+    start_stream(MOST_IDS, 0.0, 0.0);
+    stream.wrong = 0.0;
+    stream.shown = GRRL_MAX_FEATURES;
+    show(1, 0.0, false);
+    show(1, 0.0, true);
+    stream.first = 40;
+    show(4, 0.0, false);
+    assert_int_equal(scene.counts.overflow, 4 * 40);
+    /* nothing to be seen */
+    start_stream(1, 0.0, 0.0);
+    stream.shown = 0;
+    show(5, 0.0, false);
+    update();
     start_stream(1, 0.0, 0.0);
     update();
     run_stream(20);
