@@ -175,7 +175,7 @@ static bool slow_fits_elsewhere(int slot, int n_own)
 /* Bodies that move apart a little; features in the wrong body, in none and on the table; blobs. */
 static void make_scene(int n_bodies, int n_features, int n_keyframes)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     scene.config.slack = scene_chance(0.3) ? 2.0f : 1.0f;
     scene.config.model_error_m = (float)scene_uniform(0.0001, 0.0005);
     double size = pow(10.0, scene_uniform(-3.5, -1.5));
@@ -270,7 +270,7 @@ static void features_find_their_body(void **state)
     scene_seed("features_find_their_body");
     int wrong = 0;
     for (int run = 0; run < 20; run++) {
-        scene_start(12);
+        (void)scene_start(12);
         for (int b = 0; b < 3; b++)
             scene_wander(scene_add_body(12), 0.03, 0.5);
         scene_see(1.0, 0.1);

@@ -129,7 +129,7 @@ static double slow_best_cut(int body)
 /* Two bodies joined by a pivot between them that turns by so much at most, fitted as one. */
 static void make_pair(int n, int n_keyframes, double turn, bool crossing, double noise)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     scene.config.min_features = (uint8_t)scene_int(3, 5);
     (void)scene_add_body(n);
     (void)scene_add_body(n);

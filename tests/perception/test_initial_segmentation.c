@@ -89,7 +89,7 @@ static int size_of_group(int slot)
 static void strew(int clusters, int each, int sparse)
 {
     int capacity = GRRL_MAX_FEATURES;
-    scene_start(1);
+    (void)scene_start(1);
     scene.config.min_features = (uint8_t)scene_int(3, 6);
     for (int c = 0; c < clusters; c++) {
         double x = scene_uniform(-0.4, 0.4);
@@ -157,7 +157,7 @@ static void segmentation_at_capacity(void **state)
     strew(3, GRRL_MAX_FEATURES / 3, GRRL_MAX_FEATURES);
     check_segmentation();
     for (int run = 0; run < 3; run++) { /* more groups than links */
-        scene_start(1);
+        (void)scene_start(1);
         scene.config.min_features = 3;
         for (int i = 0; i < GRRL_MAX_FEATURES; i++)
             (void)scene_add_feature(9, 0.2 * (i / 5) + 0.001 * (i % 5), 0.002 * (i % 2));
@@ -173,7 +173,7 @@ static void objects_stand_out(void **state)
     (void)state;
     scene_seed("objects_stand_out");
     for (int run = 0; run < 30; run++) {
-        scene_start(1);
+        (void)scene_start(1);
         for (int i = 0; i < 30; i++)
             (void)scene_add_feature(9, 0.004 * i, scene_uniform(-0.015, 0.015));
         for (int i = 0; i < 30; i++)

@@ -267,9 +267,9 @@ static void join(struct picture *picture)
 
 static void end_rest(void)
 {
-    struct picture *last = &plain.picture[plain.n_pictures - 1];
     if (plain.window_frames == 0)
         return;
+    struct picture *last = &plain.picture[plain.n_pictures > 0 ? plain.n_pictures - 1 : 0];
     if (plain.rest_open) {
         draw(last, true);
     } else if (plain.n_pictures > 0 && last->at_rest && moved_from(last, 4.0 * noise()) == 0) {
@@ -378,7 +378,7 @@ static float frame_y[MOST_POINTS];
 static void start_stream(int n, double missing, double outliers)
 {
     struct grrl_perception_config config;
-    scene_start(0);
+    (void)scene_start(0);
     config = scene.config;
     config.table_m = 2.0f;
     assert_int_equal(grrl_perception_init(&scene, &config), GRRL_OK);
@@ -600,7 +600,7 @@ static void configurations_of_a_tracker_and_a_camera(void **state)
     struct grrl_perception_config camera;
     grrl_perception_config_default(&tracker);
     grrl_perception_config_camera(&camera, 0.001f);
-    scene_start(0);
+    (void)scene_start(0);
     const float *a = &tracker.noise_m;
     const float *b = &scene.config.noise_m;
     for (int i = 0; i < 10; i++)
