@@ -454,6 +454,9 @@ static void check_fit_fields(const struct grrl_joint_evidence *e, const struct s
 {
     assert_near(e->fit.excess, slow->excess, slow->determined ? 0.02 : 0.5);
     assert_int_equal(e->fit.excited, slow->excited);
+    double prior = (double)scene.config.pivot_scale_m + slow_half_extent(e->b);
+    assert_true(e->fit.point_variance > 0.0f);
+    assert_true((double)e->fit.point_variance <= 1.001 * prior * prior);
     if (!slow->determined)
         return;
     assert_near(1e3 * (double)e->fit.lower, 1e3 * slow->lower, 5e-3);
@@ -505,14 +508,15 @@ static void evidence_of_random_pairs(void **state)
     for (int run = 0; run < 1200; run++) {
         struct grrl_joint_evidence e;
         int motion = run % MOTIONS;
-        make_pair(motion, scene_int(3, 12), scene_int(2, 20), pow(10.0, scene_uniform(-2.0, 0.3)),
+        make_pair(motion, scene_int(3, 12), scene_int(2, run % 8 < 4 ? 5 : 20),
+                  pow(10.0, scene_uniform(-2.0, 0.3)),
                   run % 3 == 0 ? scene_uniform(1.0, 3.0) : 1.0);
         compared[motion] += check_weigh(1, 2);
         accepted[motion] += grrl_joints_weigh(&scene, 1, 2, &e);
     }
     for (int i = 0; i < MOTIONS; i++) {
         print_message("motion %d: %d of 300 compared, %d joints\n", i, compared[i], accepted[i]);
-        assert_true(compared[i] > 250);
+        assert_true(compared[i] > 240);
     }
     assert_true(accepted[REVOLUTE] > 50);
     assert_true(accepted[PRISMATIC] > 30);

@@ -511,6 +511,17 @@ static void tracks_at_capacity(void **state)
     assert_int_equal(scene.counts.overflow, 40);
     show(1, 0.0, false);
     assert_int_equal(scene.counts.overflow, 40);
+    /* but for those that one does */
+    start_stream(MOST_IDS, 0.0, 0.0);
+    stream.wrong = 0.0;
+    stream.shown = 5;
+    show(5, 0.0, false);
+    stream.shown = GRRL_MAX_FEATURES;
+    show(1, 0.0, true);
+    stream.first = 40;
+    show(4, 0.0, false);
+    assert_int_equal(scene.n_keyframes, 1);
+    assert_int_equal(scene.counts.overflow, 40 + 3 * 5);
     /* one frame of a rest is enough to be remembered by */
     start_stream(MOST_IDS, 0.0, 0.0);
     stream.wrong = 0.0;
