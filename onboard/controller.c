@@ -57,7 +57,7 @@ static const struct grrl_policy_type *find_policy(const char *name)
 {
     static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
     for (size_t i = 0; i < sizeof offered / sizeof offered[0]; i++)
-        if (strcmp(offered[i]->name, name) == 0)
+        if (strncmp(offered[i]->name, name, GRRL_POLICY_NAME_BYTES) == 0)
             return offered[i];
     return NULL;
 }

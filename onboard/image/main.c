@@ -96,6 +96,8 @@ static void write_memory(void)
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
+    if (!controller.open)
+        return; /* there is no learner yet */
     const struct grrl_usage used = grrl_learner_usage(&controller.learner);
     write_line("used entries", used.n);
     write_line("used features", controller.learner.perception.counts.features_high);

@@ -117,9 +117,11 @@ static inline struct placed then(struct placed a, struct placed b)
     return (struct placed){to_world(a, b.p), a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
 }
 
-/* An empty table, with keyframes in which nothing is seen; every third at rest, and the first. */
-static inline void scene_start(int n_keyframes)
+/* An empty table, with keyframes in which nothing is seen; every third at rest, and the first.
+ * Returns how many there are: as many as asked for, where they fit. */
+static inline int scene_start(int n_keyframes)
 {
+    n_keyframes = n_keyframes < GRRL_MAX_KEYFRAMES ? n_keyframes : GRRL_MAX_KEYFRAMES;
     memset(&scene, 0, sizeof scene);
     scene.config = (struct grrl_perception_config){.noise_m = 0.0007f,
                                                    .model_error_m = 0.0001f,
@@ -139,6 +141,7 @@ static inline void scene_start(int n_keyframes)
         for (int b = 0; b < GRRL_MAX_LINKS; b++)
             scene_body[k][b] = place(0.0, 0.0, 0.0);
     }
+    return n_keyframes;
 }
 
 static inline uint16_t scene_add_feature(uint8_t body, double x, double y)
