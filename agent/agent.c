@@ -156,7 +156,7 @@ enum grrl_status grrl_agent_init(struct grrl_agent *agent, const struct grrl_age
     agent->heard_us = agent_now_us(agent);
     grrl_wire_bind_model(&agent->model);
     grrl_wire_bind_points(&agent->points);
-    enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, &config->memory);
+    enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, config->policy);
     if (status != GRRL_OK)
         return status;
     return subscribe(agent);

@@ -19,6 +19,8 @@
 #include "grrl/learner/learner.h"
 #include "wire.h"
 
+GRRL_API_BEGIN
+
 enum grrl_agent_event_kind {
     GRRL_AGENT_NOTE,     /* something to tell the user: text */
     GRRL_AGENT_DECIDED,  /* decision */
@@ -38,17 +40,12 @@ struct grrl_agent_event {
 
 struct grrl_agent_config {
     struct grrl_learner_config learner;
+    struct grrl_policy policy;
     int64_t session_id; /* random, above 0, another one in each run */
     bool observe;       /* learn from the decisions on the wire, send nothing */
     int64_t (*now_us)(void *context);
     void (*on_event)(void *context, const struct grrl_agent_event *event);
-    /* Chooses the next push in place of grrl_learner_choose, by grrl_learner_adopt, and returns
-     * what that returns, or GRRL_ERR_NONE; NULL: the learner chooses. For comparisons of policies.
-     */
-    enum grrl_status (*choose)(void *context, struct grrl_learner *learner,
-                               struct grrl_decision *decision);
     void *context;
-    struct grrl_learner_memory memory;
 };
 
 struct grrl_agent_counts {
@@ -119,5 +116,7 @@ int64_t grrl_agent_silence_us(const struct grrl_agent *agent);
 
 /* Abandons the trial under way and unsubscribes. */
 void grrl_agent_close(struct grrl_agent *agent);
+
+GRRL_API_END
 
 #endif

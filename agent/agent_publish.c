@@ -3,6 +3,19 @@
 
 #include "agent_internal.h"
 
+_Static_assert((int)GRRL_CHOICE_RANDOM == GRRL_DECISION_T_RANDOM &&
+                   (int)GRRL_CHOICE_EXPLORE == GRRL_DECISION_T_EXPLORE &&
+                   (int)GRRL_CHOICE_EXPLOIT == GRRL_DECISION_T_EXPLOIT &&
+                   (int)GRRL_CHOICE_ADOPTED == GRRL_DECISION_T_ADOPTED &&
+                   (int)GRRL_CHOICE_RULE == GRRL_DECISION_T_RULE,
+               "reasons are the same on the wire");
+_Static_assert((int)GRRL_SOURCE_NONE == GRRL_DECISION_T_NONE &&
+                   (int)GRRL_SOURCE_EXACT == GRRL_DECISION_T_EXACT &&
+                   (int)GRRL_SOURCE_RELAXED == GRRL_DECISION_T_RELAXED &&
+                   (int)GRRL_SOURCE_SUBSTRUCTURE == GRRL_DECISION_T_SUBSTRUCTURE &&
+                   (int)GRRL_SOURCE_CASES == GRRL_DECISION_T_CASES,
+               "and sources");
+
 static void publish(struct grrl_agent *agent, const char *channel, int size,
                     const struct grrl_wire_why *why)
 {
@@ -97,19 +110,13 @@ void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *d
     message->link_number = (int16_t)decision->body_number;
     message->direction_deg = (int16_t)grrl_direction_deg[choice->direction];
     message->reason = (int8_t)choice->reason;
-    message->experience = -1;
     message->value = choice->value;
     message->lower = choice->lower;
     message->upper = choice->upper;
-    if (choice->closest_case != GRRL_NO_CASE) {
-        message->level = GRRL_DECISION_T_CONTEXT;
-        message->distance = choice->mismatches;
-        message->experience = (int32_t)choice->closest_case;
-    } else if (choice->from.experience != GRRL_NO_EXPERIENCE) {
-        message->level = (int8_t)choice->from.level;
-        message->distance = choice->from.distance;
-        message->experience = (int32_t)choice->from.experience;
-    }
+    message->source = (int8_t)choice->source.kind;
+    message->distance = choice->source.distance;
+    message->source_index =
+        choice->source.kind == GRRL_SOURCE_NONE ? -1 : (int32_t)choice->source.index;
     message->phi = choice->phi;
     message->last_reward = agent->update.reward;
     message->last_target = agent->update.target;
@@ -171,14 +178,14 @@ void agent_publish_status(struct grrl_agent *agent)
     if (agent->config.observe)
         return;
     struct grrl_wire_why why;
-    const struct grrl_learner_usage usage = grrl_learner_usage_of(&agent->learner);
+    const struct grrl_usage usage = grrl_learner_usage(&agent->learner);
     grrl_agent_status_t status = {
         .utime = agent_now_us(agent),
         .session_id = agent->config.session_id,
         .plant_session_id = agent->plant_session_id,
         .trial_id = agent->stage == STAGE_NONE ? 0 : agent->trial_id,
         .pushes = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq,
-        .experiences = (int32_t)usage.n,
+        .entries = (int32_t)usage.n,
         .capacity = (int32_t)usage.capacity,
         .evictions = (int32_t)(usage.evictions & INT32_MAX),
         .received = agent->counts.received,

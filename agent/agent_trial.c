@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "agent_internal.h"
-
-/* Frames at rest that settle a scene whose sender does not tell the phase. */
-enum { SETTLING_FRAMES = 10 };
+#include "grrl/base/settling.h"
 
 /* Between answers to frames that need none: at the camera's rate nobody waits for one. */
 enum { RESEND_US = 50000 };
@@ -67,14 +65,10 @@ static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
     while (direction < GRRL_DIRECTIONS && grrl_direction_deg[direction] != seen->direction_deg)
         direction++;
     struct grrl_decision decision;
-    if (seen->trial_id != agent->trial_id || seen->cmd_seq != cmd_seq ||
-        grrl_learner_adopt(&agent->learner, (uint16_t)seen->link_number, direction, &decision) !=
-            GRRL_OK)
-        return false;
-    uint32_t used = decision.choice.from.experience;
-    if (seen->reason == GRRL_DECISION_T_EXPLOIT && used != GRRL_NO_EXPERIENCE)
-        grrl_experience_touch(&agent->learner.store, used);
-    return true;
+    bool exploited = seen->reason == GRRL_DECISION_T_EXPLOIT;
+    return seen->trial_id == agent->trial_id && seen->cmd_seq == cmd_seq &&
+           grrl_learner_adopt(&agent->learner, (uint16_t)seen->link_number, direction, exploited,
+                              &decision) == GRRL_OK;
 }
 
 /* It looks again, perhaps at every frame: once is enough. */
@@ -95,10 +89,7 @@ static void choose(struct grrl_agent *agent)
             next_push(agent);
         return;
     }
-    const struct grrl_agent_config *config = &agent->config;
-    enum grrl_status status = config->choose != NULL
-                                  ? config->choose(config->context, &agent->learner, &decision)
-                                  : grrl_learner_choose(&agent->learner, &decision);
+    enum grrl_status status = grrl_learner_choose(&agent->learner, &decision);
     if (status != GRRL_OK) {
         tell_blind(agent, status);
         return;
@@ -213,7 +204,7 @@ static int8_t phase_of(struct grrl_agent *agent, const grrl_points_t *points, in
     if (moving)
         return GRRL_POINTS_T_PUSHING;
     agent->rest_frames++;
-    return agent->rest_frames >= SETTLING_FRAMES ? GRRL_POINTS_T_SETTLED : GRRL_POINTS_T_REST;
+    return agent->rest_frames >= GRRL_SETTLING_FRAMES ? GRRL_POINTS_T_SETTLED : GRRL_POINTS_T_REST;
 }
 
 /*

@@ -30,21 +30,18 @@ static void save(struct run *run)
 
 static void explain(const grrl_decision_t *decision)
 {
-    static const char *const reasons[] = {"at random", "new action", "best bound", "adopted"};
-    static const char *const levels[] = {"same structure", "same structure, properties dropped",
-                                         "sub-structure"};
+    static const char *const reasons[] = {"at random", "new action", "best bound", "adopted",
+                                          "by rule"};
+    static const char *const sources[] = {"nothing", "the same structure",
+                                          "the same structure, properties dropped",
+                                          "a sub-structure", "all cases"};
     (void)printf("trial %" PRId32 " push %" PRId32 ": f%d at %d deg, %s", decision->trial_id,
                  decision->cmd_seq, decision->link_number, decision->direction_deg,
                  reasons[decision->reason]);
-    if (decision->experience >= 0)
-        (void)printf(" %.2f (%.2f to %.2f) from ", (double)decision->value, (double)decision->lower,
-                     (double)decision->upper);
-    if (decision->experience >= 0 && decision->level == GRRL_DECISION_T_CONTEXT)
-        (void)printf("all cases, case %" PRId32 " differs least, in %d part%s",
-                     decision->experience, decision->distance, decision->distance == 1 ? "" : "s");
-    else if (decision->experience >= 0)
-        (void)printf("experience %" PRId32 ", %s, distance %d", decision->experience,
-                     levels[decision->level], decision->distance);
+    if (decision->source != GRRL_DECISION_T_NONE)
+        (void)printf(" %.2f (%.2f to %.2f) from %s, closest %" PRId32 " at distance %d",
+                     (double)decision->value, (double)decision->lower, (double)decision->upper,
+                     sources[decision->source], decision->source_index, decision->distance);
     (void)printf("; phi %.2f, last reward %g\n", (double)decision->phi,
                  (double)decision->last_reward);
 }
@@ -56,11 +53,14 @@ static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
         run->trials++;
         run->pushes += event->pushes;
     }
-    if (!run->options.quiet)
-        (void)printf(
-            "trial %" PRId32 ": %" PRId32 " pushes, %s, %u %s\n", event->trial_id, event->pushes,
-            outcomes[event->outcome], (unsigned)grrl_learner_usage_of(&agent.learner).n,
-            run->options.learner.policy.kind == GRRL_POLICY_LEARN ? "cases" : "experiences");
+    const char *entries = run->options.policy->entries;
+    if (!run->options.quiet && entries != NULL)
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %" PRIu32 " %s\n", event->trial_id,
+                     event->pushes, outcomes[event->outcome], grrl_learner_usage(&agent.learner).n,
+                     entries);
+    else if (!run->options.quiet)
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s\n", event->trial_id, event->pushes,
+                     outcomes[event->outcome]);
     save(run);
 }
 
@@ -131,6 +131,7 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
 
 static int run_agent(struct run *run)
 {
+    const struct grrl_policy_type *type = run->options.policy;
     struct grrl_agent_config config = {
         .learner = run->options.learner,
         .session_id = grrl_process_random_session(),
@@ -138,20 +139,18 @@ static int run_agent(struct run *run)
         .now_us = grrl_process_now_us,
         .on_event = on_event,
         .context = run,
-        .memory = {.cases_capacity = run->options.experiences,
-                   .states_capacity = run->options.experiences,
-                   .experiences_capacity = run->options.experiences},
     };
-    struct grrl_learner_memory *memory = &config.memory;
-    memory->cases = calloc(memory->cases_capacity, sizeof *memory->cases);
-    memory->states = calloc(memory->states_capacity, sizeof *memory->states);
-    memory->experiences = calloc(memory->experiences_capacity, sizeof *memory->experiences);
-    lcm_t *lcm = NULL;
-    bool started = false;
-    if (memory->cases != NULL && memory->states != NULL && memory->experiences != NULL)
-        lcm = grrl_process_open_lcm("grrl-agent", run->options.lcm_url);
-    if (lcm != NULL)
-        started = start(run, &config, lcm);
+    size_t bytes = type->bytes(run->options.experiences);
+    void *memory = calloc(1, bytes + 1);
+    if (memory == NULL || grrl_policy_make(type, memory, bytes, run->options.experiences,
+                                           run->options.policy_config, &config.policy) != GRRL_OK) {
+        (void)fprintf(stderr, "grrl-agent: there is no memory for %" PRIu32 " %s\n",
+                      run->options.experiences, type->entries);
+        free(memory);
+        return EXIT_FAILURE;
+    }
+    lcm_t *lcm = grrl_process_open_lcm("grrl-agent", run->options.lcm_url);
+    bool started = lcm != NULL && start(run, &config, lcm);
     if (started) {
         loop(run, lcm);
         grrl_agent_close(&agent);
@@ -159,23 +158,16 @@ static int run_agent(struct run *run)
     }
     if (lcm != NULL)
         lcm_destroy(lcm);
-    free(memory->cases);
-    free(memory->states);
-    free(memory->experiences);
+    free(memory);
     return started && !run->failed ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int main(int argc, char **argv)
 {
     static struct run run;
-    switch (grrl_agent_options_parse(argc, argv, &run.options)) {
-    case GRRL_OPTIONS_DONE:
-        return EXIT_SUCCESS;
-    case GRRL_OPTIONS_BAD:
-        return 2;
-    case GRRL_OPTIONS_RUN:
-        break;
-    }
+    enum grrl_options_result parsed = grrl_agent_options_parse(argc, argv, &run.options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     grrl_process_catch_signals();
     int status = run_agent(&run);
     if (run.trials > 0 && !run.options.quiet)

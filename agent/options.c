@@ -1,257 +1,177 @@
-#define _POSIX_C_SOURCE 200809L
-
+/* options.c: the table of grrl-agent's options; each policy of the library adds its parameters. */
 #include "options.h"
 
-#include <errno.h>
-#include <getopt.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#ifndef GRRL_VERSION
-#define GRRL_VERSION "unknown"
-#endif
+enum { MOST_PARAMETERS = 32, HELP_BYTES = 160 };
 
-enum option_id {
-    OPT_POLICY = 256,
-    OPT_STORE,
-    OPT_EXPERIENCES,
-    OPT_SEED,
-    OPT_ALPHA,
-    OPT_GAMMA,
-    OPT_BETA,
-    OPT_Z,
-    OPT_NOISE,
-    OPT_OBSERVE,
-    OPT_TRACKER_TIMEOUT,
-    OPT_LCM_URL,
-    OPT_QUIET,
-    OPT_EXPLAIN,
-    OPT_HELP,
-    OPT_VERSION
+static const struct grrl_program program = {
+    .name = "grrl-agent",
+    .usage = "grrl-agent [OPTION]...",
+    .intro = "Learns to find out how articulated objects move by pushing them.\n"
+             "Waits for feature points on LCM; grrl-sim sends some.\n",
+    .outro = "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
+             "Exit status: 0 all trials done, log read or stopped by a signal; 1 trouble;\n"
+             "2 wrong command line.\n",
 };
 
-/* The one list of options: getopt's table and --help are both made from it. */
-static const struct {
-    enum option_id id;
-    const char *name;
-    const char *argument; /* NULL: it has none */
-    const char *help;
-} table[] = {
-    {OPT_POLICY, "policy", "NAME", "how pushes are chosen: learn, paper or random (learn)"},
-    {OPT_STORE, "store", "FILE", "load experiences from FILE and save them there after each trial"},
-    {OPT_EXPERIENCES, "experiences", "N", "memory for N experiences, 1 to 1000000 (1000)"},
-    {OPT_SEED, "seed", "N", "seed of all random choices (1)"},
-    {OPT_ALPHA, "alpha", "X", "paper: learning rate, above 0 to 1 (0.3)"},
-    {OPT_GAMMA, "gamma", "X", "paper: discount of later rewards, 0 to below 1 (0.1)"},
-    {OPT_BETA, "beta", "X", "paper: a new action has probability exp(-beta phi) (2)"},
-    {OPT_Z, "z", "X", "paper: width of the bounds of Interval Estimation (0.25)"},
-    {OPT_NOISE, "noise", "MM", "standard deviation of a tracked point, millimetres (0.7)"},
-    {OPT_OBSERVE, "observe", NULL, "learn from another agent's pushes, live or from a log"},
-    {OPT_TRACKER_TIMEOUT, "tracker-timeout", "S",
-     "give up when nothing is heard for S seconds (wait for ever)"},
-    {OPT_LCM_URL, "lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0"},
-    {OPT_QUIET, "quiet", NULL, "print errors only"},
-    {OPT_EXPLAIN, "explain", NULL, "print a line for each decision: what and why"},
-    {OPT_HELP, "help", NULL, "print this text"},
-    {OPT_VERSION, "version", NULL, "print the version"},
+/* A policy's configuration, whatever its type. */
+union configuration {
+    max_align_t aligned;
+    unsigned char bytes[GRRL_POLICY_CONFIG_BYTES];
 };
 
-enum { N_OPTIONS = sizeof table / sizeof table[0] };
+/* A parameter of a policy, and what the user gave for it. */
+struct given {
+    const struct grrl_policy_type *policy;
+    const struct grrl_parameter *parameter;
+    bool is_given;
+    float value;
+    char help[HELP_BYTES];
+};
 
-static void print_help(void)
+static float *value_of(const struct grrl_parameter *parameter, union configuration *config)
 {
-    (void)printf("Usage: grrl-agent [OPTION]...\n"
-                 "Learns to find out how articulated objects move by pushing them.\n"
-                 "Waits for feature points on LCM; grrl-sim sends some.\n\n");
-    for (size_t i = 0; i < N_OPTIONS; i++) {
-        char left[40];
-        (void)snprintf(left, sizeof left, "--%s%s%s", table[i].name,
-                       table[i].argument != NULL ? " " : "",
-                       table[i].argument != NULL ? table[i].argument : "");
-        (void)printf("  %-22s %s\n", left, table[i].help);
-    }
-    (void)printf("\nWithout --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
-                 "Exit status: 0 all trials done, log read or stopped by a signal; 1 trouble;\n"
-                 "2 wrong command line.\n");
+    return (float *)(void *)(config->bytes + parameter->offset);
 }
 
-static bool bad(const char *name, const char *text, const char *right)
+static const char *take_parameter(void *context, const char *text)
 {
-    (void)fprintf(stderr, "grrl-agent: --%s %s: must be %s\n", name, text, right);
-    return false;
+    struct given *given = context;
+    union configuration config;
+    double value;
+    if (!grrl_option_number_of(text, &value))
+        return given->parameter->range;
+    given->is_given = true;
+    given->value = (float)value;
+    given->policy->config_default(config.bytes);
+    *value_of(given->parameter, &config) = given->value;
+    return given->policy->config_check(config.bytes, NULL) == GRRL_OK ? NULL
+                                                                      : given->parameter->range;
 }
 
-static bool parse_float(const char *name, const char *text, const char *right, float *value)
+/* A row for each parameter of each policy; returns how many. */
+static size_t add_parameters(struct given *given, struct grrl_option *rows)
 {
-    char *end;
-    float parsed = strtof(text, &end);
-    if (end == text || *end != '\0' || !isfinite(parsed))
-        return bad(name, text, right);
-    *value = parsed;
-    return true;
-}
-
-/* A parameter of the policy; the library knows which values are in its range. */
-static bool parse_parameter(const char *name, const char *text, const char *right,
-                            struct grrl_policy_config *policy, float *value)
-{
-    const char *field = "";
-    if (!parse_float(name, text, right, value))
-        return false;
-    return grrl_policy_config_check(policy, &field) == GRRL_OK || bad(name, text, right);
-}
-
-static bool parse_unsigned(const char *name, const char *text, unsigned long long low,
-                           unsigned long long high, const char *right, unsigned long long *value)
-{
-    char *end;
-    errno = 0;
-    unsigned long long parsed = strtoull(text, &end, 10);
-    bool digits = text[0] >= '0' && text[0] <= '9';
-    if (!digits || *end != '\0' || errno != 0 || parsed < low || parsed > high)
-        return bad(name, text, right);
-    *value = parsed;
-    return true;
-}
-
-static bool parse_policy(const char *text, enum grrl_policy_kind *kind)
-{
-    static const struct {
-        const char *name;
-        enum grrl_policy_kind kind;
-    } names[] = {
-        {"learn", GRRL_POLICY_LEARN}, {"paper", GRRL_POLICY_PAPER}, {"random", GRRL_POLICY_RANDOM}};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i].name) == 0) {
-            *kind = names[i].kind;
-            return true;
+    size_t n = 0;
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++) {
+        union configuration config;
+        if ((*type)->config_default != NULL)
+            (*type)->config_default(config.bytes);
+        for (size_t i = 0; i < (*type)->n_parameters && n < MOST_PARAMETERS; i++, n++) {
+            const struct grrl_parameter *parameter = &(*type)->parameters[i];
+            given[n] = (struct given){.policy = *type, .parameter = parameter};
+            (void)snprintf(given[n].help, HELP_BYTES, "%s: %s, %s (%g)", (*type)->name,
+                           parameter->help, parameter->range,
+                           (double)*value_of(parameter, &config));
+            rows[n] =
+                grrl_option_call(parameter->name, "X", given[n].help, take_parameter, &given[n]);
         }
     }
-    return bad("policy", text, "learn, paper or random");
+    return n;
 }
 
-static bool parse_noise(const char *text, float *noise_m)
+/* "one of learn (..), paper (..)", or with a line for each, for --help */
+static void list_policies(const char *before, const char *between, bool with_text, char *to,
+                          size_t capacity)
 {
-    float mm;
-    if (!parse_float("noise", text, "millimetres, above 0 to 100", &mm))
-        return false;
-    if (!(mm > 0.0f && mm <= 100.0f))
-        return bad("noise", text, "millimetres, above 0 to 100");
-    *noise_m = mm * 0.001f;
-    return true;
-}
-
-static bool parse_timeout(const char *text, double *seconds)
-{
-    float parsed;
-    const char *right = "seconds, 0.1 to 1000000";
-    if (!parse_float("tracker-timeout", text, right, &parsed))
-        return false;
-    if (!(parsed >= 0.1f && parsed <= 1e6f))
-        return bad("tracker-timeout", text, right);
-    *seconds = (double)parsed;
-    return true;
-}
-
-static bool take(enum option_id id, const char *text, struct grrl_agent_options *options)
-{
-    struct grrl_policy_config *policy = &options->learner.policy;
-    unsigned long long n = 0;
-    bool good = true;
-    switch (id) {
-    case OPT_POLICY:
-        return parse_policy(text, &policy->kind);
-    case OPT_STORE:
-        options->store = text;
-        return true;
-    case OPT_EXPERIENCES:
-        good = parse_unsigned("experiences", text, 1, 1000000, "a number from 1 to 1000000", &n);
-        options->experiences = (uint32_t)n;
-        return good;
-    case OPT_SEED:
-        good = parse_unsigned("seed", text, 0, UINT64_MAX, "a number from 0", &n);
-        options->learner.seed = n;
-        return good;
-    case OPT_ALPHA:
-        return parse_parameter("alpha", text, "a number above 0 to 1", policy, &policy->alpha);
-    case OPT_GAMMA:
-        return parse_parameter("gamma", text, "a number from 0 to below 1", policy, &policy->gamma);
-    case OPT_BETA:
-        return parse_parameter("beta", text, "a number from 0 to 1000", policy, &policy->beta);
-    case OPT_Z:
-        return parse_parameter("z", text, "a number from 0 to 1000", policy, &policy->z);
-    case OPT_NOISE:
-        return parse_noise(text, &options->learner.perception.noise_m);
-    case OPT_OBSERVE:
-        options->observe = true;
-        return true;
-    case OPT_TRACKER_TIMEOUT:
-        return parse_timeout(text, &options->tracker_timeout_s);
-    case OPT_LCM_URL:
-        options->lcm_url = text;
-        return true;
-    case OPT_QUIET:
-        options->quiet = true;
-        return true;
-    case OPT_EXPLAIN:
-        options->explain = true;
-        return true;
-    default:
-        return false;
+    (void)snprintf(to, capacity, "%s", before);
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++) {
+        size_t length = strlen(to);
+        (void)snprintf(to + length, capacity - length, "%s%s%s%s",
+                       type == grrl_policies ? "" : between, (*type)->name, with_text ? ": " : "",
+                       with_text ? (*type)->text : "");
     }
 }
 
-static bool consistent(const struct grrl_agent_options *options)
+static const char *take_policy(void *context, const char *text)
 {
-    if (options->quiet && options->explain) {
-        (void)fprintf(stderr, "grrl-agent: --quiet and --explain contradict each other\n");
-        return false;
-    }
-    return true;
+    static char right[HELP_BYTES];
+    const struct grrl_policy_type **policy = context;
+    *policy = grrl_policy_find(text);
+    list_policies("one of ", ", ", false, right, sizeof right);
+    return *policy != NULL ? NULL : right;
 }
 
-static void make_getopt_table(struct option *options)
+static const char *take_noise(void *context, const char *text)
 {
-    memset(options, 0, (N_OPTIONS + 1) * sizeof *options);
-    for (size_t i = 0; i < N_OPTIONS; i++) {
-        options[i].name = table[i].name;
-        options[i].has_arg = table[i].argument != NULL ? required_argument : no_argument;
-        options[i].val = (int)table[i].id;
+    double mm;
+    bool good = grrl_option_number_of(text, &mm) && mm <= 100.0;
+    float noise_m = good ? (float)mm * 0.001f : 0.0f;
+    if (!(noise_m > 0.0f))
+        return "millimetres, above 0 to 100";
+    *(float *)context = noise_m;
+    return NULL;
+}
+
+/* Makes the policy's configuration from what was given; RUN if it fits the policy. */
+static enum grrl_options_result configure(const struct given *given, size_t n,
+                                          struct grrl_agent_options *options)
+{
+    static union configuration config;
+    char what[HELP_BYTES];
+    const struct grrl_policy_type *policy = options->policy;
+    if (policy->config_default != NULL) {
+        policy->config_default(config.bytes);
+        options->policy_config = config.bytes;
     }
+    for (size_t i = 0; i < n; i++) {
+        if (given[i].is_given && given[i].policy != policy) {
+            (void)snprintf(what, sizeof what, "--%s goes with --policy %s",
+                           given[i].parameter->name, given[i].policy->name);
+            return grrl_options_wrong(&program, what);
+        }
+        if (given[i].is_given)
+            *value_of(given[i].parameter, &config) = given[i].value;
+    }
+    if (options->store != NULL && policy->entries == NULL) {
+        (void)snprintf(what, sizeof what, "--store: the policy %s does not learn", policy->name);
+        return grrl_options_wrong(&program, what);
+    }
+    return GRRL_OPTIONS_RUN;
 }
 
 enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                                                   struct grrl_agent_options *options)
 {
-    struct option getopt_table[N_OPTIONS + 1];
-    make_getopt_table(getopt_table);
+    char policies[4 * HELP_BYTES];
+    struct given given[MOST_PARAMETERS];
+    struct grrl_option rows[GRRL_OPTIONS_MOST];
     memset(options, 0, sizeof *options);
     grrl_learner_config_default(&options->learner);
-    options->learner.seed = 1;
     options->experiences = 1000;
-    int id;
-    while ((id = getopt_long(argc, argv, "", getopt_table, NULL)) != -1) {
-        if (id == OPT_HELP) {
-            print_help();
-            return GRRL_OPTIONS_DONE;
-        }
-        if (id == OPT_VERSION) {
-            (void)printf("grrl-agent %s\n", GRRL_VERSION);
-            return GRRL_OPTIONS_DONE;
-        }
-        if (id == '?') {
-            (void)fprintf(stderr, "Try grrl-agent --help\n");
-            return GRRL_OPTIONS_BAD;
-        }
-        if (!take((enum option_id)id, optarg, options))
-            return GRRL_OPTIONS_BAD;
-    }
-    if (optind < argc) {
-        (void)fprintf(stderr, "grrl-agent: %s: there are no arguments, only options\n",
-                      argv[optind]);
-        return GRRL_OPTIONS_BAD;
-    }
-    return consistent(options) ? GRRL_OPTIONS_RUN : GRRL_OPTIONS_BAD;
+    options->policy = grrl_policies[0];
+    list_policies("how pushes are chosen (the first)\n", "\n", true, policies, sizeof policies);
+    const struct grrl_option own[] = {
+        grrl_option_call("policy", "NAME", policies, take_policy, &options->policy),
+        grrl_option_text("store", "FILE",
+                         "load what was learned from FILE and save it there after each trial",
+                         &options->store),
+        grrl_option_u32("experiences", "N",
+                        "memory for N cases or experiences, 1 to 1000000 (1000)", 1, 1000000,
+                        &options->experiences),
+        grrl_option_u64("seed", "N", "seed of all random choices (1)", 0, UINT64_MAX,
+                        &options->learner.seed),
+        grrl_option_call("noise", "MM", "standard deviation of a tracked point, millimetres (0.7)",
+                         take_noise, &options->learner.perception.noise_m),
+        grrl_option_flag("observe", "learn from another agent's pushes, live or from a log",
+                         &options->observe),
+        grrl_option_number("tracker-timeout", "S",
+                           "give up when nothing is heard for S seconds (wait for ever)", 0.1, 1e6,
+                           1.0, &options->tracker_timeout_s),
+        grrl_option_text("lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0",
+                         &options->lcm_url),
+        grrl_option_flag("quiet", "print errors only", &options->quiet),
+        grrl_option_flag("explain", "print a line for each decision: what and why",
+                         &options->explain),
+    };
+    enum { OWN = sizeof own / sizeof own[0] };
+    _Static_assert((int)OWN + (int)MOST_PARAMETERS <= (int)GRRL_OPTIONS_MOST, "all rows fit");
+    memcpy(rows, own, sizeof own);
+    size_t n = add_parameters(given, rows + OWN);
+    enum grrl_options_result result = grrl_options_parse(&program, rows, OWN + n, argc, argv, NULL);
+    if (result == GRRL_OPTIONS_RUN && options->quiet && options->explain)
+        return grrl_options_wrong(&program, "--quiet and --explain contradict each other");
+    return result == GRRL_OPTIONS_RUN ? configure(given, n, options) : result;
 }

@@ -5,10 +5,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/options.h"
 #include "grrl/learner/learner.h"
+#include "grrl/policies.h"
 
 struct grrl_agent_options {
     struct grrl_learner_config learner;
+    const struct grrl_policy_type *policy;
+    void *policy_config; /* of the policy, or NULL: it has none */
     const char *store;   /* NULL: experiences are not kept */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;
@@ -17,8 +21,6 @@ struct grrl_agent_options {
     bool quiet;
     bool explain;
 };
-
-enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };
 
 /* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
 enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,

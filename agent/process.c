@@ -1,3 +1,4 @@
+/* Opens LCM, reads clocks and signals, draws sessions, and notices a silent bus. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "process.h"

@@ -1,3 +1,4 @@
+/* Saves experiences atomically, and sets damaged files aside. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "store_file.h"
@@ -220,9 +221,13 @@ static const char *advice(enum grrl_status status)
 {
     switch (status) {
     case GRRL_ERR_FULL:
-        return "it holds more experiences than fit: raise --experiences";
+        return "it holds more than fits: raise --experiences";
     case GRRL_ERR_FORMAT:
-        return "this is no store of experiences; name another file with --store";
+        return "this is no store of experience; name another file with --store";
+    case GRRL_ERR_POLICY:
+        return "another policy learned it; choose that one with --policy, or name another file "
+               "with "
+               "--store";
     default:
         return "written by another version or with other limits; use the program that wrote it, or "
                "name another file with --store";
@@ -273,17 +278,11 @@ static void describe_damage(enum grrl_status status, uint32_t kept, uint32_t los
 {
     if (status == GRRL_ERR_IO)
         (void)snprintf(what, capacity,
-                       "the file ends early, %lu experiences before the cut are kept, at least %lu "
+                       "the file ends early, %lu entries before the cut are kept, at least %lu "
                        "are lost",
                        (unsigned long)kept, (unsigned long)lost);
     else
         (void)snprintf(what, capacity, "the file is damaged, nothing of it is used");
-}
-
-static void forget(struct grrl_learner *learner)
-{
-    grrl_experience_clear(&learner->store);
-    grrl_cases_clear(&learner->cases);
 }
 
 static enum grrl_status read_file(struct stream *stream, struct grrl_learner *learner,
@@ -306,7 +305,7 @@ enum grrl_store_result grrl_store_file_load(const struct grrl_file_calls *calls,
     uint32_t lost = 0;
     report->text[0] = '\0';
     if (!open_stream(&stream, calls, path, O_RDONLY)) {
-        forget(learner);
+        grrl_learner_clear(learner);
         if (stream.error == ENOENT)
             return GRRL_STORE_LOADED;
         (void)fail(report, path, strerror(stream.error));
@@ -316,7 +315,7 @@ enum grrl_store_result grrl_store_file_load(const struct grrl_file_calls *calls,
     bool readable = close_stream(&stream);
     if (readable && status == GRRL_OK)
         return GRRL_STORE_LOADED;
-    uint32_t kept = learner->store.n_experiences + learner->cases.n;
+    uint32_t kept = grrl_learner_usage(learner).n;
     bool damaged = status == GRRL_ERR_IO || status == GRRL_ERR_CORRUPT;
     enum grrl_store_result result = GRRL_STORE_REFUSED;
     if (!readable) {
@@ -328,6 +327,6 @@ enum grrl_store_result grrl_store_file_load(const struct grrl_file_calls *calls,
         (void)fail(report, path, advice(status));
     }
     if (result == GRRL_STORE_REFUSED || status == GRRL_ERR_CORRUPT)
-        forget(learner);
+        grrl_learner_clear(learner);
     return result;
 }

@@ -16,6 +16,8 @@
 
 #include "grrl/learner/learner.h"
 
+GRRL_API_BEGIN
+
 /* As POSIX has them, with -1 and errno for a failure. */
 struct grrl_file_calls {
     void *context;
@@ -53,5 +55,7 @@ GRRL_MUST_USE enum grrl_store_result grrl_store_file_load(const struct grrl_file
 GRRL_MUST_USE bool grrl_store_file_save(const struct grrl_file_calls *calls, const char *path,
                                         const struct grrl_learner *learner,
                                         struct grrl_store_report *report);
+
+GRRL_API_END
 
 #endif

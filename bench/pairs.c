@@ -1,3 +1,4 @@
+/* Random pairs of structures for the matchers, and the clock and quantiles of all benches. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>

@@ -67,7 +67,7 @@ static bool measure(const struct size *size, uint64_t seed, struct sum *sums)
     grrl_perception_config_default(&config);
     make_world(size, seed);
     bool good = grrl_perception_init(&perception, &config) == GRRL_OK;
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     for (int i = 0; good && i < PUSHES; i++) {
         float dq[WORLD_LINKS] = {0.0f};
         int link = 1 + (int)grrl_random_below(&world.random, (uint32_t)world.n_links - 1);

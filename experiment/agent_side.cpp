@@ -1,3 +1,4 @@
+/* agent_side.cpp: the agent's core with the memory of its policy. */
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -49,44 +50,19 @@ int64_t AgentSide::now_us(void *context)
     return static_cast<AgentSide *>(context)->clock_();
 }
 
-void AgentSide::on_event(void *context, const grrl_agent_event *event)
-{
-    AgentSide *side = static_cast<AgentSide *>(context);
-    if (event->kind == GRRL_AGENT_TRIAL_END && side->chooser_ != nullptr)
-        side->chooser_->begin_trial();
-}
-
-grrl_status AgentSide::choose(void *context, grrl_learner *learner, grrl_decision *decision)
-{
-    AgentSide *side = static_cast<AgentSide *>(context);
-    const grrl_model *model = grrl_perception_model(&learner->perception);
-    if (model->n_bodies == 0)
-        return GRRL_ERR_NONE;
-    side->chooser_->look(learner->perception);
-    Action action = side->chooser_->choose(*model);
-    return grrl_learner_adopt(learner, action.body_number, action.direction, decision);
-}
-
 AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim::Node *node,
                      const Bytes &experience)
-    : clock_(std::move(clock)), cases_(phase.policy->capacity), states_(phase.policy->capacity),
-      experiences_(phase.policy->capacity), agent_(std::make_unique<grrl_agent>())
+    : clock_(std::move(clock)), learns_(phase.policy->learns()),
+      agent_(std::make_unique<grrl_agent>())
 {
-    const Policy &policy = *phase.policy;
-    if (policy.make_chooser != nullptr)
-        chooser_ = policy.make_chooser(node, phase.seed);
     grrl_agent_config config{};
     grrl_learner_config_default(&config.learner);
-    policy.configure(config.learner);
+    config.policy = make_policy(phase, node, config.learner);
     config.learner.seed = phase.seed;
     config.learner.perception.noise_m = std::max(least_noise_m, static_cast<float>(phase.noise_m));
     config.session_id = agent_session;
     config.now_us = now_us;
-    config.on_event = on_event;
-    config.choose = chooser_ != nullptr ? choose : nullptr;
     config.context = this;
-    config.memory = {cases_.data(),   policy.capacity,     states_.data(),
-                     policy.capacity, experiences_.data(), policy.capacity};
     must(grrl_agent_init(agent_.get(), &config, lcm), "the agent does not start");
     if (experience.empty())
         return;
@@ -97,6 +73,28 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     must(grrl_learner_load(&agent_->learner, &io), "the experience does not load");
 }
 
+grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *node,
+                                   grrl_learner_config &learner)
+{
+    const Policy &policy = *phase.policy;
+    if (policy.make_chooser != nullptr) {
+        chooser_ = policy.make_chooser(node, phase.seed);
+        return policy_of(*chooser_);
+    }
+    alignas(std::max_align_t) unsigned char config[GRRL_POLICY_CONFIG_BYTES];
+    if (policy.type->config_default != nullptr)
+        policy.type->config_default(config);
+    if (policy.configure)
+        policy.configure(learner, config);
+    size_t bytes = policy.type->bytes(policy.capacity);
+    memory_.resize(bytes / sizeof(std::max_align_t) + 1);
+    grrl_policy made{};
+    must(grrl_policy_make(policy.type, memory_.data(), bytes, policy.capacity,
+                          policy.type->config_default != nullptr ? config : nullptr, &made),
+         "the policy does not start");
+    return made;
+}
+
 AgentSide::~AgentSide()
 {
     grrl_agent_close(agent_.get());
@@ -105,6 +103,8 @@ AgentSide::~AgentSide()
 Bytes AgentSide::experience() const
 {
     Bytes bytes;
+    if (!learns_)
+        return bytes;
     grrl_io io{};
     io.context = &bytes;
     io.write = append_bytes;

@@ -1,3 +1,4 @@
+/* chooser.cpp: a chooser behind the library's interface, and what it has tried. */
 #include "chooser.hpp"
 
 #include <algorithm>
@@ -5,6 +6,63 @@
 
 namespace grrl_experiment
 {
+
+namespace
+{
+
+Chooser &chooser_of(void *self)
+{
+    return *static_cast<Chooser *>(self);
+}
+
+size_t no_bytes(uint32_t)
+{
+    return 0;
+}
+
+grrl_status no_init(void *, uint32_t, const void *)
+{
+    return GRRL_OK;
+}
+
+void begin_trial(void *self)
+{
+    chooser_of(self).begin_trial();
+}
+
+void choose(void *self, const grrl_view *view, grrl_random *, grrl_choice *choice)
+{
+    chooser_of(self).look(*view->perception);
+    Action action = chooser_of(self).choose(*view->model);
+    *choice = grrl_choice{};
+    while (choice->link + 1 < view->model->n_bodies &&
+           view->model->body[choice->link].number != action.body_number)
+        choice->link++;
+    choice->direction = action.direction;
+    choice->reason = GRRL_CHOICE_RULE;
+    choice->source = grrl_no_source();
+}
+
+grrl_policy_type make_chooser_policy()
+{
+    grrl_policy_type type{};
+    type.name = "chooser";
+    type.text = "a rule of the experiment";
+    type.bytes = no_bytes;
+    type.init = no_init;
+    type.begin_trial = begin_trial;
+    type.choose = choose;
+    return type;
+}
+
+} // namespace
+
+const grrl_policy_type chooser_policy = make_chooser_policy();
+
+grrl_policy policy_of(Chooser &chooser)
+{
+    return {&chooser_policy, &chooser};
+}
 
 bool Tried::Joint::operator<(const Joint &other) const
 {

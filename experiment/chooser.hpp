@@ -1,8 +1,8 @@
 /*
- * chooser.hpp: a policy that is not the library's: it sees the believed model and names a push.
+ * chooser.hpp: a policy that is not the library's: it sees the estimated model and names a push.
  *
- * grrl_learner_adopt carries its word out, so that perception, grounding, the robot and the
- * supervisor are those of every other policy.
+ * chooser_policy makes it one of the library's interface, so that perception, grounding, the robot
+ * and the supervisor are those of every other policy.
  */
 #ifndef GRRL_EXPERIMENT_CHOOSER_HPP
 #define GRRL_EXPERIMENT_CHOOSER_HPP
@@ -11,7 +11,9 @@
 #include <set>
 #include <utility>
 
-#include "agent_c.hpp"
+#include "grrl/learner/grounding.h"
+#include "grrl/learner/learner.h"
+#include "grrl/perception/perception.h"
 
 namespace grrl_experiment
 {
@@ -33,6 +35,12 @@ public:
     /* The next push; the model has at least one body. */
     virtual Action choose(const grrl_model &model) = 0;
 };
+
+/* Asks a Chooser, which its memory points to. It learns nothing. */
+extern const grrl_policy_type chooser_policy;
+
+/* chooser_policy at work; the chooser must outlive it. */
+grrl_policy policy_of(Chooser &chooser);
 
 /* Which pushes were made since the believed links and joints last changed. */
 class Tried

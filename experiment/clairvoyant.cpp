@@ -1,8 +1,11 @@
+/* clairvoyant.cpp: tries every push in a copy of the world, and takes the best. */
 #include "clairvoyant.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "adapter.hpp"
+#include "grrl/base/settling.h"
 #include "truth.hpp"
 
 namespace grrl_experiment
@@ -17,24 +20,9 @@ using grrl_sim::World;
 constexpr double sure_turn_rad = 0.14;
 constexpr double sure_slide_m = 0.006;
 
-/* Frames at rest after a push, as the simulator's node sends them. */
-constexpr int rest_frames = 10;
-
 /* What a moved joint counts besides a believed one: it decides among pushes that reveal the same.
  */
 constexpr double moved_share = 0.1;
-
-grrl_sim::PushCommand command_of(const grrl_push &push)
-{
-    grrl_sim::PushCommand command;
-    command.start_m = {static_cast<double>(push.start_m.x), static_cast<double>(push.start_m.y)};
-    command.end_m = {static_cast<double>(push.end_m.x), static_cast<double>(push.end_m.y)};
-    command.travel_m = static_cast<double>(push.travel_m);
-    command.speed_m_s = static_cast<double>(push.speed_m_s);
-    command.force_limit_n = static_cast<double>(push.force_n);
-    command.timeout_s = static_cast<double>(push.timeout_s);
-    return command;
-}
 
 double sure_motion(const grrl_sim::JointSpec &joint)
 {
@@ -44,9 +32,9 @@ double sure_motion(const grrl_sim::JointSpec &joint)
 /* Joints rightly believed less joints wrongly believed. */
 double rightly_believed(const World &world, const grrl_model &model)
 {
-    Belief belief = belief_of(model);
-    std::vector<bool> known = known_joints(world, belief);
-    std::vector<bool> wrong = wrong_joints(world, belief);
+    Estimate estimate = estimate_of(model);
+    std::vector<bool> known = known_joints(world, estimate);
+    std::vector<bool> wrong = wrong_joints(world, estimate);
     return static_cast<double>(std::count(known.begin(), known.end(), true) -
                                std::count(wrong.begin(), wrong.end(), true));
 }
@@ -54,16 +42,9 @@ double rightly_believed(const World &world, const grrl_model &model)
 void see(World &world, grrl_perception &perception, bool pushing)
 {
     grrl_sim::Frame frame;
-    std::vector<int32_t> ids;
-    std::vector<float> x;
-    std::vector<float> y;
+    grrl_sim::FrameArrays arrays;
     world.observe(frame);
-    for (const grrl_sim::TrackedFeature &feature : frame.features) {
-        ids.push_back(static_cast<int32_t>(feature.id));
-        x.push_back(static_cast<float>(feature.x_m));
-        y.push_back(static_cast<float>(feature.y_m));
-    }
-    grrl_frame seen = {static_cast<uint32_t>(ids.size()), ids.data(), x.data(), y.data()};
+    grrl_frame seen = arrays.frame_of(frame);
     grrl_perception_observe(&perception, &seen, pushing);
 }
 
@@ -112,7 +93,7 @@ double Clairvoyant::worth(const std::vector<bool> &known, const grrl_sim::PushCo
         moving = copy.step_frame();
         see(copy, *perception, true);
     }
-    for (int i = 0; i < rest_frames; i++)
+    for (int i = 0; i < GRRL_SETTLING_FRAMES; i++)
         see(copy, *perception, false);
     double share = moved_share * moved(world_(), copy, known);
     if (grrl_perception_update(perception.get()) != GRRL_OK)
@@ -122,7 +103,7 @@ double Clairvoyant::worth(const std::vector<bool> &known, const grrl_sim::PushCo
 
 Action Clairvoyant::choose(const grrl_model &model)
 {
-    std::vector<bool> known = known_joints(world_(), belief_of(model));
+    std::vector<bool> known = known_joints(world_(), estimate_of(model));
     grrl_grounding_config config;
     grrl_grounding_config_default(&config);
     Action best{model.body[0].number, 0};
@@ -136,7 +117,7 @@ Action Clairvoyant::choose(const grrl_model &model)
             if (tried_.has(action) ||
                 grrl_grounding_push(&model, &config, body, direction, &push) != GRRL_OK)
                 continue;
-            double gain = worth(known, command_of(push));
+            double gain = worth(known, grrl_sim::command_of(push));
             if (!any || gain > most) {
                 any = true;
                 most = gain;

@@ -1,3 +1,4 @@
+/* files.cpp: files and folders, on POSIX. */
 #include "files.hpp"
 
 #include <cerrno>
@@ -52,6 +53,16 @@ void make_folder(const std::string &path)
     std::filesystem::create_directories(path, error);
     if (error)
         throw std::runtime_error("cannot make the folder " + path + ": " + error.message());
+}
+
+std::string csv_field(const std::string &text)
+{
+    if (text.find_first_of(",\"\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (char c : text)
+        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
 }
 
 } // namespace grrl_experiment

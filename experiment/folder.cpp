@@ -1,3 +1,4 @@
+/* folder.cpp: results kept experiment by experiment, so that a run can go on. */
 #include "folder.hpp"
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+/* jobs.cpp: experiments in processes of their own, some at a time. */
 #include "jobs.hpp"
 
 #include <csignal>

@@ -84,13 +84,13 @@ JobsResult run_tasks(const Options &options, const Plan &plan, const Folder &fol
                            all - tasks.size(), all);
     if (tasks.empty())
         return JobsResult::DONE;
-    Progress progress(trials, static_cast<int64_t>(tasks.size()));
+    Progress progress(trials, static_cast<int64_t>(tasks.size()), "experiments");
     JobCallbacks callbacks;
     callbacks.work = [&](size_t i, const Report &report) {
         experiment(options, plan.curves[tasks[i].curve], tasks[i], folder, report);
     };
     callbacks.on_trial = [&progress](int pushes) { progress.trial(pushes); };
-    callbacks.on_task = [&progress] { progress.experiment(); };
+    callbacks.on_task = [&progress] { progress.part(); };
     callbacks.on_tick = [&progress] { progress.show(); };
     JobsResult result = run_jobs(tasks.size(), jobs_of(options), callbacks);
     progress.finish();
@@ -147,14 +147,9 @@ int run(const Options &options, const Plan &plan)
 int main(int argc, char **argv)
 {
     Options options;
-    switch (parse_options(argc, argv, options)) {
-    case OptionsResult::DONE:
-        return 0;
-    case OptionsResult::BAD:
-        return 2;
-    case OptionsResult::RUN:
-        break;
-    }
+    grrl_options_result parsed = parse_options(argc, argv, options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     try {
         grrl_sim::Result<Plan> plan = make_plan(options);
         if (!plan) {

@@ -1,3 +1,4 @@
+/* motion.cpp: the push that should move the joints that are not sure yet. */
 #include "motion.hpp"
 
 #include <algorithm>

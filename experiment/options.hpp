@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "policies.hpp"
 #include "transport.hpp"
 
@@ -29,10 +30,7 @@ struct Options {
     std::string command; /* as typed, for the report */
 };
 
-enum class OptionsResult { RUN, DONE, BAD };
-
-/* Says on the standard error what is wrong. */
-OptionsResult parse_options(int argc, char **argv, Options &options);
+grrl_options_result parse_options(int argc, char **argv, Options &options);
 
 } // namespace grrl_experiment
 

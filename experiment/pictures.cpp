@@ -1,14 +1,11 @@
+/* pictures.cpp: data and scripts for gnuplot. */
 #include "pictures.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include "files.hpp"
+#include "gnuplot.hpp"
 #include "results.hpp"
 
 namespace grrl_experiment
@@ -29,7 +26,7 @@ std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Ex
         int trials = plan.curves[c].trials;
         for (int trial = 1; trial <= trials; trial++) {
             int reach = std::min({neighbours, trial - 1, trials - trial});
-            Estimate around = pushes(results[c], trial - reach, trial + reach);
+            Mean around = pushes(results[c], trial - reach, trial + reach);
             text << trial << "\t" << pushes(results[c], trial, trial).mean << "\t" << around.mean
                  << "\t" << around.low() << "\t" << around.high() << "\n";
         }
@@ -38,18 +35,12 @@ std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Ex
     return text.str();
 }
 
-std::string quoted(const std::string &text)
-{
-    std::string result = "'";
-    for (char c : text)
-        result += c == '\'' ? std::string("''") : std::string(1, c == '\n' ? ' ' : c);
-    return result + "'";
-}
-
 std::string plot_command(const Plan &plan, const Figure &figure, const std::string &data)
 {
     std::vector<std::string> parts;
-    auto index = [&data](size_t block) { return quoted(data) + " index " + std::to_string(block); };
+    auto index = [&data](size_t block) {
+        return gnuplot_quoted(data) + " index " + std::to_string(block);
+    };
     for (size_t i = 0; i < figure.curves.size(); i++) {
         std::string color = plan.curves[figure.curves[i]].policy->color;
         parts.push_back(index(i) + " using 1:4:5 with filledcurves lc rgb '" + color + "' notitle");
@@ -61,11 +52,12 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
         const Curve &curve = plan.curves[figure.curves[i]];
         std::string color = curve.policy->color;
         /* In a transfer, dashed is without experience. */
-        bool dashed = transfer && curve.policy->learns && curve.pretrain.empty();
+        bool dashed = transfer && curve.policy->learns() && curve.pretrain.empty();
         parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
                         "' notitle");
         parts.push_back(index(i) + " using 1:3 with lines lw 2.5 dt " + (dashed ? "2" : "1") +
-                        " lc rgb '" + color + "' title " + quoted(curve_label(curve, false)));
+                        " lc rgb '" + color + "' title " +
+                        gnuplot_quoted(curve_label(curve, false)));
     }
     std::string command = "plot ";
     for (size_t i = 0; i < parts.size(); i++)
@@ -81,8 +73,8 @@ std::string rows_of(const Plan &plan, const Figure &figure, const std::vector<Ex
     for (size_t c : figure.curves) {
         int trials = plan.curves[c].trials;
         text << curve_label(plan.curves[c], false);
-        for (Estimate of : {pushes(results[c], 1, std::min(5, trials)),
-                            pushes(results[c], std::max(1, trials - 9), trials)})
+        for (Mean of : {pushes(results[c], 1, std::min(5, trials)),
+                        pushes(results[c], std::max(1, trials - 9), trials)})
             text << "\t" << of.mean << "\t" << of.low() << "\t" << of.high();
         text << "\n";
     }
@@ -92,7 +84,7 @@ std::string rows_of(const Plan &plan, const Figure &figure, const std::vector<Ex
 std::string rows_script(const Figure &figure)
 {
     std::string height = std::to_string(150 + 18 * figure.curves.size());
-    std::string data = quoted(figure.name + ".tsv");
+    std::string data = gnuplot_quoted(figure.name + ".tsv");
     auto series = [&data](const char *columns, const char *point, const char *color,
                           const char *title) {
         return data + " using " + columns + " with xerrorbars pt " + point + " ps 0.7 lc rgb '" +
@@ -103,14 +95,14 @@ std::string rows_script(const Figure &figure)
            height +
            " font 'Helvetica,Arial,sans-serif,13' background '#ffffff'\n"
            "set output " +
-           quoted(figure.name + ".svg") +
+           gnuplot_quoted(figure.name + ".svg") +
            "\nset datafile separator '\\t'\n"
            "set border 3 lc rgb '#555555'\n"
            "set tics nomirror out tc rgb '#333333'\n"
            "set ytics noenhanced\n"
            "set grid x y lc rgb '#e6e6e6' lt 1\n"
            "set title " +
-           quoted(figure.title) +
+           gnuplot_quoted(figure.title) +
            " noenhanced tc rgb '#222222'\n"
            "set xlabel 'pushes until the structure is known' tc rgb '#222222'\n"
            "set yrange [" +
@@ -122,7 +114,7 @@ std::string rows_script(const Figure &figure)
            series("2:0:3:4:ytic(1)", "6", "#8c8c8c", "first five trials") + ", \\\n     " +
            series("5:0:6:7", "7", "#1666a8", "last ten") + "\n" +
            "set terminal pngcairo size 1200," + height + " font 'Helvetica,13'\nset output " +
-           quoted(figure.name + ".png") + "\nreplot\n";
+           gnuplot_quoted(figure.name + ".png") + "\nreplot\n";
 }
 
 std::string curves_script(const Plan &plan, const Figure &figure)
@@ -131,13 +123,13 @@ std::string curves_script(const Plan &plan, const Figure &figure)
            "set terminal svg size 900,540 font 'Helvetica,Arial,sans-serif,15' "
            "background '#ffffff'\n"
            "set output " +
-           quoted(figure.name + ".svg") +
+           gnuplot_quoted(figure.name + ".svg") +
            "\n"
            "set border 3 lc rgb '#555555'\n"
            "set tics nomirror out tc rgb '#333333'\n"
            "set grid y lc rgb '#e6e6e6' lt 1\n"
            "set title " +
-           quoted(figure.title) +
+           gnuplot_quoted(figure.title) +
            " noenhanced tc rgb '#222222'\n"
            "set xlabel 'trial' tc rgb '#222222'\n"
            "set ylabel 'pushes until the structure is known' tc rgb '#222222'\n"
@@ -148,24 +140,7 @@ std::string curves_script(const Plan &plan, const Figure &figure)
            plot_command(plan, figure, figure.name + ".tsv") +
            "set terminal pngcairo size 1200,720 font 'Helvetica,15'\n"
            "set output " +
-           quoted(figure.name + ".png") + "\nreplot\n";
-}
-
-bool run_gnuplot(const std::string &folder, const std::string &script)
-{
-    (void)std::fflush(nullptr);
-    pid_t pid = fork();
-    if (pid == 0) {
-        int none = open("/dev/null", O_RDWR);
-        if (none >= 0 && chdir(folder.c_str()) == 0) {
-            (void)dup2(none, STDERR_FILENO);
-            (void)execlp("gnuplot", "gnuplot", script.c_str(), static_cast<char *>(nullptr));
-        }
-        _exit(127);
-    }
-    int status = 1;
-    return pid > 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) &&
-           WEXITSTATUS(status) == 0;
+           gnuplot_quoted(figure.name + ".png") + "\nreplot\n";
 }
 
 } // namespace
@@ -176,9 +151,9 @@ bool draw(const Folder &folder, const Plan &plan, const Figure &figure,
     bool rows = figure.kind == Figure::Kind::ROWS;
     write_file(folder.path(figure.name + ".tsv"),
                rows ? rows_of(plan, figure, results) : data_of(plan, figure, results));
-    write_file(folder.path(figure.name + ".gp"),
-               rows ? rows_script(figure) : curves_script(plan, figure));
-    return run_gnuplot(folder.path(""), figure.name + ".gp");
+    std::string script = rows ? rows_script(figure) : curves_script(plan, figure);
+    write_file(folder.path(figure.name + ".gp"), script);
+    return run_gnuplot(folder.path(""), script);
 }
 
 } // namespace grrl_experiment

@@ -1,3 +1,4 @@
+/* plan.cpp: which curves a figure or a command line asks for. */
 #include "plan.hpp"
 
 #include "options.hpp"
@@ -37,7 +38,7 @@ void add_curves(Plan &plan, Figure &figure, const Curve &base)
     without.pretrain_trials = 0;
     figure.curves.push_back(plan.curves.size());
     plan.curves.push_back(without);
-    if (base.pretrain.empty() || !base.policy->learns)
+    if (base.pretrain.empty() || !base.policy->learns())
         return;
     figure.curves.push_back(plan.curves.size());
     plan.curves.push_back(base);

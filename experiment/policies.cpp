@@ -1,6 +1,8 @@
+/* policies.cpp: the table of policies: a row for each of the library, and one for each of ours. */
 #include "policies.hpp"
 
 #include "clairvoyant.hpp"
+#include "grrl/policies.h"
 #include "motion.hpp"
 #include "rule.hpp"
 
@@ -11,22 +13,6 @@ namespace
 {
 
 constexpr uint16_t memory = 1000; /* grrl-agent's default */
-
-void learn(grrl_learner_config &config)
-{
-    config.policy.kind = GRRL_POLICY_LEARN;
-}
-
-void paper(grrl_learner_config &config)
-{
-    config.policy.kind = GRRL_POLICY_PAPER;
-}
-
-/* Also for policies that are not the library's: they keep no experience. */
-void not_learning(grrl_learner_config &config)
-{
-    config.policy.kind = GRRL_POLICY_RANDOM;
-}
 
 std::unique_ptr<Chooser> rule(const grrl_sim::Node *, uint64_t)
 {
@@ -43,24 +29,40 @@ std::unique_ptr<Chooser> clairvoyant(const grrl_sim::Node *node, uint64_t seed)
     return make_clairvoyant([node]() -> const grrl_sim::World & { return node->world(); }, seed);
 }
 
+Policy chooser_row(const char *name, const char *text, const char *color,
+                   std::unique_ptr<Chooser> (*make)(const grrl_sim::Node *, uint64_t))
+{
+    Policy policy{name, text, &chooser_policy, color, memory};
+    policy.make_chooser = make;
+    return policy;
+}
+
+std::vector<Policy> make_table()
+{
+    /* Of the library's policies in their order; further ones begin again. */
+    const char *const colors[] = {"#1666a8", "#d1661b", "#c2a21f", "#8c8c8c"};
+    std::vector<Policy> table;
+    for (const grrl_policy_type *const *type = grrl_policies; *type != nullptr; type++)
+        table.push_back({(*type)->name, (*type)->text, *type,
+                         colors[table.size() % (sizeof colors / sizeof colors[0])], memory});
+    table.push_back(chooser_row(
+        "rule", "no learning: the longest body, along, across, at 45 degrees, no repeats",
+        "#2f8f4e", rule));
+    table.push_back(chooser_row("motion",
+                                "no learning: the most motion expected in joints not sure yet",
+                                "#8a4fb0", motion));
+    table.push_back(chooser_row("clairvoyant",
+                                "knows the truth, tries every push in a copy of the world: a bound",
+                                "#b3243a", clairvoyant));
+    table.back().needs_truth = true;
+    return table;
+}
+
 } // namespace
 
 const std::vector<Policy> &policies()
 {
-    static const std::vector<Policy> table = {
-        {"random", "any push, as likely as any other", false, false, "#8c8c8c", memory,
-         not_learning, nullptr},
-        {"paper", "the paper's learner: closest experience, phi, Interval Estimation", true, false,
-         "#d1661b", memory, paper, nullptr},
-        {"learn", "the library's learner: the mean over all cases alike", true, false, "#1666a8",
-         memory, learn, nullptr},
-        {"rule", "no learning: the longest body, along, across, at 45 degrees, no repeats", false,
-         false, "#2f8f4e", memory, not_learning, rule},
-        {"motion", "no learning: the most motion expected in joints not sure yet", false, false,
-         "#8a4fb0", memory, not_learning, motion},
-        {"clairvoyant", "knows the truth, tries every push in a copy of the world: a bound", false,
-         true, "#b3243a", memory, not_learning, clairvoyant},
-    };
+    static const std::vector<Policy> table = make_table();
     return table;
 }
 

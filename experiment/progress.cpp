@@ -1,3 +1,4 @@
+/* progress.cpp: how far a run is, on the standard error. */
 #include "progress.hpp"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ bool is_terminal()
 
 } // namespace
 
-Progress::Progress(int64_t trials, int64_t experiments)
-    : trials_(trials), experiments_(experiments), terminal_(is_terminal()),
+Progress::Progress(int64_t trials, int64_t parts, const char *name_of_parts)
+    : trials_(trials), parts_(parts), name_of_parts_(name_of_parts), terminal_(is_terminal()),
       start_(std::chrono::steady_clock::now())
 {
 }
@@ -55,10 +56,9 @@ std::string Progress::line() const
         (void)std::snprintf(left, sizeof left, "%ld:%02ld", seconds / 60, seconds % 60);
     }
     char text[160];
-    (void)std::snprintf(text, sizeof text,
-                        "[%s] %3.0f%%  %lld of %lld experiments, %s left, %.0f pushes/s",
-                        bar.c_str(), 100.0 * share, static_cast<long long>(experiments_done_),
-                        static_cast<long long>(experiments_), left,
+    (void)std::snprintf(text, sizeof text, "[%s] %3.0f%%  %lld of %lld %s, %s left, %.0f pushes/s",
+                        bar.c_str(), 100.0 * share, static_cast<long long>(parts_done_),
+                        static_cast<long long>(parts_), name_of_parts_, left,
                         static_cast<double>(pushes_) / std::max(elapsed, 0.001));
     return text;
 }

@@ -12,11 +12,11 @@ namespace grrl_experiment
 class Progress
 {
 public:
-    /* trials: to be done, over all experiments. */
-    Progress(int64_t trials, int64_t experiments);
+    /* Trials to be done in all, in so many parts ("experiments"). */
+    Progress(int64_t trials, int64_t parts, const char *name_of_parts);
 
     void trial(int pushes);
-    void experiment() { experiments_done_++; }
+    void part() { parts_done_++; }
     void show();   /* if it is time to */
     void finish(); /* the last state, and the line is over */
 
@@ -28,9 +28,10 @@ private:
     void print();
 
     int64_t trials_;
-    int64_t experiments_;
+    int64_t parts_;
+    const char *name_of_parts_;
     int64_t trials_done_ = 0;
-    int64_t experiments_done_ = 0;
+    int64_t parts_done_ = 0;
     int64_t pushes_ = 0;
     bool terminal_;
     double shown_s_ = 0.0;

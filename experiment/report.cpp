@@ -1,3 +1,4 @@
+/* report.cpp: the page with pictures and tables. */
 #include "report.hpp"
 
 #include <sstream>
@@ -55,8 +56,7 @@ std::string table_of(const Plan &plan, const Figure &figure,
     for (size_t c : figure.curves) {
         html << "<tr><td>" << escaped(curve_label(plan.curves[c], false)) << "</td>";
         for (const Range &column : columns)
-            html << "<td>"
-                 << estimate_text(pushes(results[c], column.first, column.last), "&plusmn;")
+            html << "<td>" << mean_text(pushes(results[c], column.first, column.last), "&plusmn;")
                  << "</td>";
         char share[20];
         (void)std::snprintf(share, sizeof share, "%.1f%%",

@@ -1,24 +1,17 @@
+/* results.cpp: trials and means as CSV and as text. */
 #include "results.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
 
+#include "files.hpp"
+
 namespace grrl_experiment
 {
 
 namespace
 {
-
-std::string csv_field(const std::string &text)
-{
-    if (text.find_first_of(",\"\n") == std::string::npos)
-        return text;
-    std::string quoted = "\"";
-    for (char c : text)
-        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
 
 std::string curve_fields(const Curve &curve)
 {
@@ -35,7 +28,7 @@ std::string number(double value)
 
 std::string summary_row(const Curve &curve, const Experiments &experiments, const Range &range)
 {
-    Estimate mean = pushes(experiments, range.first, range.last);
+    Mean mean = pushes(experiments, range.first, range.last);
     bool interval = mean.half >= 0.0;
     return curve_fields(curve) + "," + range.label + "," + std::to_string(range.first) + "," +
            std::to_string(range.last) + "," + std::to_string(mean.n) + "," + number(mean.mean) +
@@ -97,14 +90,13 @@ std::string curve_label(const Curve &curve, bool with_object)
     return label;
 }
 
-std::string estimate_text(const Estimate &estimate, const char *plus_minus)
+std::string mean_text(const Mean &mean, const char *plus_minus)
 {
     char text[60];
-    if (estimate.half < 0.0)
-        (void)std::snprintf(text, sizeof text, "%.1f", estimate.mean);
+    if (mean.half < 0.0)
+        (void)std::snprintf(text, sizeof text, "%.1f", mean.mean);
     else
-        (void)std::snprintf(text, sizeof text, "%.1f %s %.1f", estimate.mean, plus_minus,
-                            estimate.half);
+        (void)std::snprintf(text, sizeof text, "%.1f %s %.1f", mean.mean, plus_minus, mean.half);
     return text;
 }
 
@@ -129,7 +121,7 @@ std::string text_table(const Plan &plan, const Figure &figure,
         text << "  ";
         cell(curve_label(plan.curves[c], false), width + 2);
         for (const Range &column : columns)
-            cell(estimate_text(pushes(results[c], column.first, column.last), "+-"), 14);
+            cell(mean_text(pushes(results[c], column.first, column.last), "+-"), 14);
         double wrong = 0.0;
         double trials = 0.0;
         for (const Trials &experiment : results[c])

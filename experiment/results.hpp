@@ -23,7 +23,7 @@ std::string summary_csv(const Plan &plan, const std::vector<Experiments> &result
 std::string curve_label(const Curve &curve, bool with_object);
 
 /* "7.2 +- 0.4" */
-std::string estimate_text(const Estimate &estimate, const char *plus_minus);
+std::string mean_text(const Mean &mean, const char *plus_minus);
 
 /* A row for each curve of a figure. */
 std::string text_table(const Plan &plan, const Figure &figure,

@@ -1,3 +1,4 @@
+/* rule.cpp: the longest body first, no push twice. */
 #include "rule.hpp"
 
 #include <algorithm>

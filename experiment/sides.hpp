@@ -6,6 +6,7 @@
 #ifndef GRRL_EXPERIMENT_SIDES_HPP
 #define GRRL_EXPERIMENT_SIDES_HPP
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -13,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include "agent_c.hpp"
+#include "agent.h"
 #include "node.hpp"
 #include "policies.hpp"
 
@@ -40,7 +41,7 @@ struct Phase {
     double noise_m = 0.0007; /* of a tracked point; the agent knows it */
 };
 
-/* Agent core, its memory, and the chooser if the policy has one. */
+/* Agent core and its policy. */
 class AgentSide
 {
 public:
@@ -57,14 +58,13 @@ public:
 
 private:
     static int64_t now_us(void *context);
-    static void on_event(void *context, const grrl_agent_event *event);
-    static grrl_status choose(void *context, grrl_learner *learner, grrl_decision *decision);
+    grrl_policy make_policy(const Phase &phase, const grrl_sim::Node *node,
+                            grrl_learner_config &learner);
 
     Clock clock_;
     std::unique_ptr<Chooser> chooser_;
-    std::vector<grrl_case> cases_;
-    std::vector<grrl_experience_state> states_;
-    std::vector<grrl_experience> experiences_;
+    bool learns_;
+    std::vector<std::max_align_t> memory_; /* of the policy */
     std::unique_ptr<grrl_agent> agent_;
 };
 

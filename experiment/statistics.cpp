@@ -1,3 +1,4 @@
+/* statistics.cpp: means, Student's t, and ranges of trials. */
 #include "statistics.hpp"
 
 #include <algorithm>
@@ -18,9 +19,9 @@ double t_quantile(int degrees)
     return 1.95996 + 2.37226 / degrees + 2.8225 / (static_cast<double>(degrees) * degrees);
 }
 
-Estimate estimate(const std::vector<double> &values)
+Mean mean_of(const std::vector<double> &values)
 {
-    Estimate result;
+    Mean result;
     result.n = static_cast<int>(values.size());
     if (values.empty())
         return result;
@@ -37,7 +38,7 @@ Estimate estimate(const std::vector<double> &values)
     return result;
 }
 
-Estimate pushes(const Experiments &experiments, int first, int last)
+Mean pushes(const Experiments &experiments, int first, int last)
 {
     std::vector<double> values;
     for (const Trials &trials : experiments) {
@@ -46,7 +47,7 @@ Estimate pushes(const Experiments &experiments, int first, int last)
             sum += trials[static_cast<size_t>(t - 1)].pushes;
         values.push_back(sum / (last - first + 1));
     }
-    return estimate(values);
+    return mean_of(values);
 }
 
 double capped(const Experiments &experiments, int first, int last)

@@ -19,7 +19,7 @@ namespace grrl_experiment
 using Trials = std::vector<TrialRow>;
 using Experiments = std::vector<Trials>;
 
-struct Estimate {
+struct Mean {
     int n = 0;
     double mean = 0.0;
     double half = -1.0; /* of the interval's width; negative: one experiment has none */
@@ -27,10 +27,10 @@ struct Estimate {
     double high() const { return half < 0.0 ? mean : mean + half; }
 };
 
-Estimate estimate(const std::vector<double> &values);
+Mean mean_of(const std::vector<double> &values);
 
 /* Pushes over the trials first .. last, counted from 1. */
-Estimate pushes(const Experiments &experiments, int first, int last);
+Mean pushes(const Experiments &experiments, int first, int last);
 
 /* The share of trials first .. last that ended at the cap. */
 double capped(const Experiments &experiments, int first, int last);

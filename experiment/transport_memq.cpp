@@ -1,3 +1,4 @@
+/* transport_memq.cpp: agent and simulator in one process. */
 #include <stdexcept>
 
 #include "transport.hpp"

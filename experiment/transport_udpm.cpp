@@ -1,3 +1,4 @@
+/* transport_udpm.cpp: agent and simulator in two processes over multicast. */
 #include <chrono>
 #include <csignal>
 #include <cstdio>

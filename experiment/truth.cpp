@@ -1,3 +1,4 @@
+/* truth.cpp: the link of each feature decides which links stand for which. */
 #include "truth.hpp"
 
 #include <algorithm>
@@ -8,7 +9,7 @@ namespace grrl_experiment
 namespace
 {
 
-bool agree(const grrl_sim::JointSpec &truth, const BelievedJoint &joint,
+bool agree(const grrl_sim::JointSpec &truth, const EstimatedJoint &joint,
            const std::vector<int> &links)
 {
     int a = links[static_cast<size_t>(truth.a)];
@@ -19,38 +20,42 @@ bool agree(const grrl_sim::JointSpec &truth, const BelievedJoint &joint,
 
 } // namespace
 
-Belief belief_of(const grrl_model_t &model)
+Estimate estimate_of(const grrl_model_t &model)
 {
-    Belief belief;
-    belief.links = model.n_links;
+    Estimate estimate;
+    estimate.links = model.n_links;
     for (int i = 0; i < model.n_joints; i++)
-        belief.joints.push_back({model.joint_a[i], model.joint_b[i], model.joint_type[i]});
+        estimate.joints.push_back({model.joint_a[i], model.joint_b[i], model.joint_type[i],
+                                   static_cast<double>(model.joint_probability[i])});
     for (int i = 0; i < model.n_features; i++)
-        if (model.feature_link[i] >= 0)
-            belief.features.push_back({model.feature_id[i], model.feature_link[i]});
-    return belief;
+        estimate.features.push_back({model.feature_id[i], model.feature_link[i]});
+    return estimate;
 }
 
-Belief belief_of(const grrl_model &model)
+Estimate estimate_of(const grrl_model &model)
 {
-    Belief belief;
-    belief.links = model.n_bodies;
+    Estimate estimate;
+    estimate.links = model.n_bodies;
     for (int i = 0; i < model.n_joints; i++)
-        belief.joints.push_back({model.joint[i].a, model.joint[i].b, model.joint[i].type});
+        estimate.joints.push_back({model.joint[i].a, model.joint[i].b, model.joint[i].type,
+                                   static_cast<double>(model.joint[i].probability)});
     for (int i = 0; i < model.n_features; i++)
-        if (model.feature_body[i] < model.n_bodies)
-            belief.features.push_back({model.feature_id[i], model.feature_body[i]});
-    return belief;
+        estimate.features.push_back(
+            {model.feature_id[i], model.feature_body[i] < model.n_bodies
+                                      ? static_cast<int>(model.feature_body[i])
+                                      : static_cast<int>(no_link)});
+    return estimate;
 }
 
-std::vector<int> believed_links(const grrl_sim::World &world, const Belief &belief)
+std::vector<int> estimated_links(const grrl_sim::World &world, const Estimate &estimate)
 {
     size_t links = world.object().links.size();
-    size_t held_n = static_cast<size_t>(belief.links);
+    size_t held_n = static_cast<size_t>(estimate.links);
     std::vector<std::vector<int>> held(links, std::vector<int>(held_n, 0));
-    for (auto [id, link] : belief.features) {
-        bool seen = id >= 0 && id < world.tracker().feature_count() && link < belief.links;
-        int of = seen ? world.tracker().true_link(static_cast<uint32_t>(id)) : -1;
+    for (auto [id, link] : estimate.features) {
+        bool held_by =
+            id >= 0 && id < world.tracker().feature_count() && link >= 0 && link < estimate.links;
+        int of = held_by ? world.tracker().true_link(static_cast<uint32_t>(id)) : -1;
         if (of >= 0)
             held[static_cast<size_t>(of)][static_cast<size_t>(link)]++;
     }
@@ -58,28 +63,28 @@ std::vector<int> believed_links(const grrl_sim::World &world, const Belief &beli
     for (const std::vector<int> &counts : held) {
         auto best = std::max_element(counts.begin(), counts.end());
         bool any = best != counts.end() && *best > 0;
-        most.push_back(any ? static_cast<int>(best - counts.begin()) : -1);
+        most.push_back(any ? static_cast<int>(best - counts.begin()) : static_cast<int>(no_link));
     }
     return most;
 }
 
-std::vector<bool> known_joints(const grrl_sim::World &world, const Belief &belief)
+std::vector<bool> known_joints(const grrl_sim::World &world, const Estimate &estimate)
 {
-    std::vector<int> links = believed_links(world, belief);
+    std::vector<int> links = estimated_links(world, estimate);
     std::vector<bool> known;
     for (const grrl_sim::JointSpec &truth : world.object().joints)
         known.push_back(
-            std::any_of(belief.joints.begin(), belief.joints.end(),
-                        [&](const BelievedJoint &joint) { return agree(truth, joint, links); }));
+            std::any_of(estimate.joints.begin(), estimate.joints.end(),
+                        [&](const EstimatedJoint &joint) { return agree(truth, joint, links); }));
     return known;
 }
 
-std::vector<bool> wrong_joints(const grrl_sim::World &world, const Belief &belief)
+std::vector<bool> wrong_joints(const grrl_sim::World &world, const Estimate &estimate)
 {
-    std::vector<int> links = believed_links(world, belief);
+    std::vector<int> links = estimated_links(world, estimate);
     const std::vector<grrl_sim::JointSpec> &joints = world.object().joints;
     std::vector<bool> wrong;
-    for (const BelievedJoint &joint : belief.joints)
+    for (const EstimatedJoint &joint : estimate.joints)
         wrong.push_back(
             std::none_of(joints.begin(), joints.end(), [&](const grrl_sim::JointSpec &truth) {
                 return agree(truth, joint, links);

@@ -1,6 +1,9 @@
 /*
- * truth.hpp: what is believed, measured by what is. On the simulator's side; an agent never sees
- * any of it.
+ * truth.hpp: an estimate of a structure, by whatever method, measured by the true one. On the
+ * simulator's side; an agent never sees any of it.
+ *
+ * A link of the estimate stands for the true link most of whose features it has. While true links
+ * have not moved against one another, several have the same one, which is right.
  */
 #ifndef GRRL_EXPERIMENT_TRUTH_HPP
 #define GRRL_EXPERIMENT_TRUTH_HPP
@@ -9,36 +12,40 @@
 #include <utility>
 #include <vector>
 
-#include "agent_c.hpp"
+#include "grrl/perception/perception.h"
+#include "wire.h"
 #include "world.hpp"
 
 namespace grrl_experiment
 {
 
-struct BelievedJoint {
+struct EstimatedJoint {
     int a; /* links, 0 .. links - 1 */
     int b;
     int type; /* enum grrl_joint_type */
+    double probability;
 };
 
-/* A model, whether it comes from the wire or from perception. */
-struct Belief {
+/* The link of a feature on the background, or on nothing known. */
+enum { no_link = -1 };
+
+struct Estimate {
     int links = 0;
-    std::vector<BelievedJoint> joints;
-    std::vector<std::pair<int32_t, int>> features; /* id and link */
+    std::vector<EstimatedJoint> joints;
+    std::vector<std::pair<int32_t, int>> features; /* id, and link or no_link; those seen */
 };
 
-Belief belief_of(const grrl_model_t &model);
-Belief belief_of(const grrl_model &model);
+Estimate estimate_of(const grrl_model_t &model);
+Estimate estimate_of(const grrl_model &model);
 
-/* Of each true link the believed one that holds most of its features; -1: none holds any. */
-std::vector<int> believed_links(const grrl_sim::World &world, const Belief &belief);
+/* Of each true link the estimated one that holds most of its features; no_link: none holds any. */
+std::vector<int> estimated_links(const grrl_sim::World &world, const Estimate &estimate);
 
-/* Of each true joint: whether it is believed, with its type. */
-std::vector<bool> known_joints(const grrl_sim::World &world, const Belief &belief);
+/* Of each true joint: whether the estimate has it, with its type. */
+std::vector<bool> known_joints(const grrl_sim::World &world, const Estimate &estimate);
 
-/* Of each believed joint: whether the object has none of this type between what the two hold. */
-std::vector<bool> wrong_joints(const grrl_sim::World &world, const Belief &belief);
+/* Of each estimated joint: whether the object has none of this type between what the two hold. */
+std::vector<bool> wrong_joints(const grrl_sim::World &world, const Estimate &estimate);
 
 } // namespace grrl_experiment
 

@@ -1,3 +1,4 @@
+/* world_side.cpp: the simulator of an experiment, and the wrong joints it sees in models. */
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -57,10 +58,10 @@ void WorldSide::on_message(const char *channel, const void *data, uint32_t size)
     if (model.cmd_seq <= cmd_seq_)
         return;
     cmd_seq_ = model.cmd_seq;
-    Belief belief = belief_of(model);
-    std::vector<bool> wrong = wrong_joints(node_->world(), belief);
+    Estimate estimate = estimate_of(model);
+    std::vector<bool> wrong = wrong_joints(node_->world(), estimate);
     for (size_t i = 0; i < wrong.size(); i++) {
-        const BelievedJoint &joint = belief.joints[i];
+        const EstimatedJoint &joint = estimate.joints[i];
         auto ends = std::minmax(model.link_number[joint.a], model.link_number[joint.b]);
         if (wrong[i])
             wrong_.insert({ends.first, ends.second, joint.type});

@@ -1,3 +1,4 @@
+/* Walks over the events of a log and checks their lengths. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "log_check.h"

@@ -11,6 +11,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "grrl/base/api.h"
+
+GRRL_API_BEGIN
+
 enum { GRRL_LOG_MAX_EVENT = 64 * 1024 * 1024 /* bytes of a message */ };
 
 struct grrl_log_why {
@@ -26,5 +30,7 @@ bool grrl_log_check(const char *path, struct grrl_log_why *why);
 
 /* The path in a URL file://PATH?.. of LCM, cut to the capacity; false: it is another provider's. */
 bool grrl_log_path(const char *url, size_t capacity, char *path);
+
+GRRL_API_END
 
 #endif

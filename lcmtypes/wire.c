@@ -1,3 +1,4 @@
+/* Decodes and encodes each message, and checks every field on the way. */
 #include "wire.h"
 
 #include <float.h>
@@ -160,10 +161,10 @@ static const struct field decision_fields[] = {
     ONE(D, I32, cmd_seq, 1, 2147483647),
     ONE(D, I16, link_number, 0, 32767),
     ONE(D, I16, direction_deg, 0, 359),
-    ONE(D, I8, reason, GRRL_DECISION_T_RANDOM, GRRL_DECISION_T_FOREIGN),
-    ONE(D, I8, level, GRRL_DECISION_T_EXACT, GRRL_DECISION_T_CONTEXT),
+    ONE(D, I8, reason, GRRL_DECISION_T_RANDOM, GRRL_DECISION_T_RULE),
+    ONE(D, I8, source, GRRL_DECISION_T_NONE, GRRL_DECISION_T_CASES),
     ONE(D, I16, distance, 0, 32767),
-    ONE(D, I32, experience, -1, 2147483647),
+    ONE(D, I32, source_index, -1, 2147483647),
     ONE(D, F32, value, ANY_FLOAT),
     ONE(D, F32, lower, ANY_FLOAT),
     ONE(D, F32, upper, ANY_FLOAT),
@@ -180,7 +181,7 @@ static const struct field agent_status_fields[] = {
     ONE(A, I64, plant_session_id, COUNT64),
     ONE(A, I32, trial_id, COUNT32),
     ONE(A, I32, pushes, COUNT32),
-    ONE(A, I32, experiences, COUNT32),
+    ONE(A, I32, entries, COUNT32),
     ONE(A, I32, capacity, COUNT32),
     ONE(A, I32, evictions, COUNT32),
     ONE(A, I64, received, COUNT64),

@@ -27,6 +27,10 @@
 #include "grrl_push_status_t.h"
 #include "grrl_trial_t.h"
 
+#include "grrl/base/api.h"
+
+GRRL_API_BEGIN
+
 /* What the messages can carry; at least what the library can (asserted in wire.c). */
 enum {
     GRRL_WIRE_MAX_POINTS = 256,
@@ -120,5 +124,7 @@ int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capaci
                                   struct grrl_wire_why *why);
 int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
                            struct grrl_wire_why *why);
+
+GRRL_API_END
 
 #endif

@@ -1,4 +1,7 @@
+/* controller.c: packets in, packets out, and a hash of each answer. */
 #include "controller.h"
+
+#include <string.h>
 
 /* FNV-1a. */
 #define HASH_START UINT64_C(0xcbf29ce484222325)
@@ -49,35 +52,44 @@ static void add_answer(const struct onboard_controller *controller, uint64_t *ha
     *hash = hash_on(*hash, controller->answer.bytes, controller->answer.n);
 }
 
+/* The policy of this name among those of the image, or NULL. */
+static const struct grrl_policy_type *find_policy(const char *name)
+{
+    static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
+    for (size_t i = 0; i < sizeof offered / sizeof offered[0]; i++)
+        if (strncmp(offered[i]->name, name, GRRL_POLICY_NAME_BYTES) == 0)
+            return offered[i];
+    return NULL;
+}
+
 static enum grrl_status open_run(struct onboard_controller *controller,
                                  struct onboard_packet *packet)
 {
     uint64_t links = onboard_get(packet, 1);
     uint64_t features = onboard_get(packet, 2);
     uint64_t keyframes = onboard_get(packet, 1);
-    uint64_t states = onboard_get(packet, 2);
-    uint64_t experiences = onboard_get(packet, 2);
+    uint64_t entries = onboard_get(packet, 2);
     struct grrl_learner_config config;
     grrl_learner_config_default(&config);
     config.seed = onboard_get(packet, 8);
-    uint64_t policy = onboard_get(packet, 1);
-    if (!onboard_packet_used_up(packet) || policy > GRRL_POLICY_RANDOM)
+    char name[GRRL_POLICY_NAME_BYTES];
+    for (size_t i = 0; i < sizeof name; i++)
+        name[i] = (char)onboard_get(packet, 1);
+    if (!onboard_packet_used_up(packet) || name[sizeof name - 1] != '\0')
         return GRRL_ERR_FORMAT;
-    config.policy.kind = (enum grrl_policy_kind)policy;
     if (links != GRRL_MAX_LINKS || features != GRRL_MAX_FEATURES ||
-        keyframes != GRRL_MAX_KEYFRAMES || states != ONBOARD_STATES ||
-        experiences != ONBOARD_EXPERIENCES)
+        keyframes != GRRL_MAX_KEYFRAMES || entries != ONBOARD_ENTRIES)
         return GRRL_ERR_VERSION;
+    const struct grrl_policy_type *type = find_policy(name);
+    if (type == NULL)
+        return GRRL_ERR_NONE;
     onboard_controller_init(controller, controller->count);
-    const struct grrl_learner_memory memory = {
-        .cases = controller->cases,
-        .cases_capacity = ONBOARD_EXPERIENCES,
-        .states = controller->states,
-        .states_capacity = ONBOARD_STATES,
-        .experiences = controller->experiences,
-        .experiences_capacity = ONBOARD_EXPERIENCES,
-    };
-    enum grrl_status status = grrl_learner_init(&controller->learner, &config, &memory);
+    struct grrl_policy policy;
+    enum grrl_status status =
+        grrl_policy_make(type, controller->policy.bytes, sizeof controller->policy.bytes,
+                         ONBOARD_ENTRIES, NULL, &policy);
+    if (status == GRRL_OK)
+        status = grrl_learner_init(&controller->learner, &config, policy);
     controller->open = status == GRRL_OK;
     begin_answer(controller, ONBOARD_DONE, status);
     return status;
@@ -146,7 +158,7 @@ static void learn(struct onboard_controller *controller, struct onboard_packet *
     count(controller, ONBOARD_STEP_LEARN, start);
     begin_answer(controller, ONBOARD_UPDATE, status);
     if (status == GRRL_OK) {
-        const struct grrl_learner_usage usage = grrl_learner_usage_of(&controller->learner);
+        const struct grrl_usage usage = grrl_learner_usage(&controller->learner);
         onboard_put_update(&controller->answer, &update, &usage);
     }
     add_answer(controller, &controller->hashes.updates);

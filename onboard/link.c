@@ -1,3 +1,4 @@
+/* Frames: byte stuffing, CRC and sequence numbers. */
 #include "link.h"
 
 /* A CRC over bytes and their own CRC comes to this. */

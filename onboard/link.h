@@ -15,6 +15,8 @@
 
 #include "packet.h"
 
+GRRL_API_BEGIN
+
 enum { ONBOARD_LINK_HEAD = 4, ONBOARD_LINK_CRC = 4 };
 
 /* The most bytes of a frame on the line: one more for each 254, and the zeros. */
@@ -51,5 +53,7 @@ void onboard_link_init(struct onboard_receiver *receiver, struct onboard_packet 
 
 /* Takes the next byte of the line. Bytes that are no frame spoil the packet, too. */
 enum onboard_link_event onboard_link_take(struct onboard_receiver *receiver, uint8_t byte);
+
+GRRL_API_END
 
 #endif

@@ -1,3 +1,4 @@
+/* Reads and writes the packets, and checks what it reads. */
 #include "packet.h"
 
 #include <string.h>
@@ -54,16 +55,17 @@ bool onboard_packet_used_up(const struct onboard_packet *packet)
     return !packet->bad && packet->at == packet->n;
 }
 
-void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy)
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, const char *policy)
 {
     onboard_packet_begin(packet, ONBOARD_OPEN);
     onboard_put(packet, GRRL_MAX_LINKS, 1);
     onboard_put(packet, GRRL_MAX_FEATURES, 2);
     onboard_put(packet, GRRL_MAX_KEYFRAMES, 1);
-    onboard_put(packet, ONBOARD_STATES, 2);
-    onboard_put(packet, ONBOARD_EXPERIENCES, 2);
+    onboard_put(packet, ONBOARD_ENTRIES, 2);
     onboard_put(packet, seed, 8);
-    onboard_put(packet, (uint64_t)policy, 1);
+    size_t length = strlen(policy);
+    for (size_t i = 0; i < GRRL_POLICY_NAME_BYTES; i++)
+        onboard_put(packet, i < length ? (uint8_t)policy[i] : 0u, 1);
 }
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing)
@@ -156,13 +158,9 @@ void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decis
     onboard_put(packet, choice->link, 1);
     onboard_put(packet, choice->direction, 1);
     onboard_put(packet, choice->reason, 1);
-    onboard_put(packet, choice->from.experience, 4);
-    onboard_put(packet, choice->from.level, 1);
-    onboard_put(packet, choice->from.distance, 1);
-    onboard_put(packet, choice->from.dropped, 1);
-    onboard_put(packet, choice->from.stored_link, 1);
-    onboard_put(packet, choice->closest_case, 4);
-    onboard_put(packet, choice->mismatches, 1);
+    onboard_put(packet, choice->source.kind, 1);
+    onboard_put(packet, choice->source.distance, 1);
+    onboard_put(packet, choice->source.index, 4);
     onboard_put_float(packet, choice->value);
     onboard_put_float(packet, choice->lower);
     onboard_put_float(packet, choice->upper);
@@ -170,12 +168,11 @@ void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decis
 }
 
 void onboard_put_update(struct onboard_packet *packet, const struct grrl_update *update,
-                        const struct grrl_learner_usage *usage)
+                        const struct grrl_usage *usage)
 {
     onboard_put_float(packet, update->reward);
     onboard_put_float(packet, update->target);
-    onboard_put(packet, update->experience, 4);
-    onboard_put(packet, update->updated_case, 4);
+    onboard_put(packet, update->index, 4);
     onboard_put(packet, usage->n, 4);
     onboard_put(packet, usage->capacity, 4);
     onboard_put(packet, usage->evictions, 4);
@@ -262,28 +259,24 @@ bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *d
     choice->link = get_byte(packet);
     choice->direction = get_byte(packet);
     choice->reason = get_byte(packet);
-    choice->from.experience = (uint32_t)onboard_get(packet, 4);
-    choice->from.level = get_byte(packet);
-    choice->from.distance = get_byte(packet);
-    choice->from.dropped = get_byte(packet);
-    choice->from.stored_link = get_byte(packet);
-    choice->closest_case = (uint32_t)onboard_get(packet, 4);
-    choice->mismatches = get_byte(packet);
+    choice->source.kind = get_byte(packet);
+    choice->source.distance = get_byte(packet);
+    choice->source.index = (uint32_t)onboard_get(packet, 4);
     choice->value = onboard_get_float(packet);
     choice->lower = onboard_get_float(packet);
     choice->upper = onboard_get_float(packet);
     choice->phi = onboard_get_float(packet);
     return onboard_packet_used_up(packet) && choice->link < GRRL_MAX_LINKS &&
-           choice->direction < GRRL_DIRECTIONS && choice->reason <= GRRL_CHOICE_FOREIGN;
+           choice->direction < GRRL_DIRECTIONS && choice->reason <= GRRL_CHOICE_RULE &&
+           choice->source.kind <= GRRL_SOURCE_CASES;
 }
 
 bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
-                        struct grrl_learner_usage *usage)
+                        struct grrl_usage *usage)
 {
     update->reward = onboard_get_float(packet);
     update->target = onboard_get_float(packet);
-    update->experience = (uint32_t)onboard_get(packet, 4);
-    update->updated_case = (uint32_t)onboard_get(packet, 4);
+    update->index = (uint32_t)onboard_get(packet, 4);
     usage->n = (uint32_t)onboard_get(packet, 4);
     usage->capacity = (uint32_t)onboard_get(packet, 4);
     usage->evictions = (uint32_t)onboard_get(packet, 4);

@@ -5,8 +5,8 @@
  * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each is
  * answered.
  *
- *   OPEN     links (1), features (2), keyframes (1), states (2), experiences (2), seed (8),
- *            policy (1)
+ *   OPEN     links (1), features (2), keyframes (1), entries (2), seed (8), name of the policy (16,
+ *            with zeros behind it)
  *   TRIAL    number (4)
  *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
  *   PERCEIVE, CHOOSE, CLOSE    nothing
@@ -26,13 +26,11 @@
 
 #include "grrl/learner/learner.h"
 
-/* How many cases and how many experiences a controller remembers, and states these are made in; a
- * state for each is the most that can be needed. */
-#ifndef ONBOARD_EXPERIENCES
-#define ONBOARD_EXPERIENCES 256
-#endif
-#ifndef ONBOARD_STATES
-#define ONBOARD_STATES ONBOARD_EXPERIENCES
+GRRL_API_BEGIN
+
+/* How many cases or experiences a controller remembers. */
+#ifndef ONBOARD_ENTRIES
+#define ONBOARD_ENTRIES 256
 #endif
 
 enum onboard_packet_type {
@@ -89,7 +87,7 @@ float onboard_get_float(struct onboard_packet *packet);
 bool onboard_packet_used_up(const struct onboard_packet *packet);
 
 /* OPEN, for a controller with the capacities of whoever calls this. */
-void onboard_put_open(struct onboard_packet *packet, uint64_t seed, enum grrl_policy_kind policy);
+void onboard_put_open(struct onboard_packet *packet, uint64_t seed, const char *policy);
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing);
 
@@ -100,13 +98,15 @@ bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *poi
 void onboard_put_model(struct onboard_packet *packet, const struct grrl_model *model);
 void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decision *decision);
 void onboard_put_update(struct onboard_packet *packet, const struct grrl_update *update,
-                        const struct grrl_learner_usage *usage);
+                        const struct grrl_usage *usage);
 
 /* The other way round, for who asked: from packet->at on. False, and the result is unspecified, for
  * bytes that are none, or with a count or an index beyond what there is room for. */
 bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
 bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
 bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,
-                        struct grrl_learner_usage *usage);
+                        struct grrl_usage *usage);
+
+GRRL_API_END
 
 #endif

@@ -1,3 +1,4 @@
+/* Feeds a recording to a controller and compares the hashes. */
 #include "replay.h"
 
 static enum grrl_status next_packet(const struct onboard_source *source,

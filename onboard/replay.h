@@ -4,6 +4,8 @@
 
 #include "controller.h"
 
+GRRL_API_BEGIN
+
 /* Returns 0 when all `size` bytes were read. */
 struct onboard_source {
     void *context;
@@ -25,5 +27,7 @@ GRRL_MUST_USE enum grrl_status onboard_replay(struct onboard_controller *control
                                               const struct onboard_source *source,
                                               struct onboard_packet *packet,
                                               struct onboard_progress *progress);
+
+GRRL_API_END
 
 #endif

@@ -1,3 +1,4 @@
+/* Answers frames from the line, repeated ones from memory. */
 #include "server.h"
 
 void onboard_server_init(struct onboard_server *server, struct onboard_controller *controller)

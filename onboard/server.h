@@ -11,6 +11,8 @@
 #include "controller.h"
 #include "link.h"
 
+GRRL_API_BEGIN
+
 struct onboard_server {
     struct onboard_controller *controller;
     uint32_t damaged;  /* frames since the start */
@@ -27,5 +29,7 @@ void onboard_server_init(struct onboard_server *server, struct onboard_controlle
 
 /* Takes the next byte of the line; how many bytes of server->line are to be sent. */
 size_t onboard_server_take(struct onboard_server *server, uint8_t byte);
+
+GRRL_API_END
 
 #endif

@@ -1,3 +1,4 @@
+/* handle.c: the trajectory of one point, from a text of numbers. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "handle.h"
@@ -15,10 +16,11 @@ struct reader {
     struct grrl_tracks_error *error;
     float scale;
     size_t line;
-    size_t n; /* numbers so far */
+    size_t n; /* coordinates so far */
     size_t capacity;
     float *value;
-    int dimensions; /* 0: no row yet */
+    int numbers;    /* in a row; 0: no row yet */
+    int dimensions; /* of a position in it */
 };
 
 static bool fail(struct reader *reader, int column, const char *what)
@@ -42,32 +44,66 @@ static bool add(struct reader *reader, float value)
     return true;
 }
 
+/* Numbers of a row: two or three are a position, seven a pose. */
+enum { MOST = 8, POSE = 7, QUATERNION = 3 };
+
+/* What a quaternion's norm may be off: text is rounded. */
+#define NORM_SLACK 0.05f
+
+static const char row_advice[] = "a row is x y, x y z or a pose: x y z and a quaternion";
+
+static bool check_count(struct reader *reader, int n, const float *value)
+{
+    char what[160];
+    if (n == POSE) {
+        float norm2 = 0.0f;
+        for (int i = QUATERNION; i < POSE; i++)
+            norm2 += value[i] * value[i];
+        return fabsf(sqrtf(norm2) - 1.0f) <= NORM_SLACK ||
+               fail(reader, 1,
+                    "seven numbers, but the last four are no quaternion of length 1; a pose is x y "
+                    "z and a quaternion");
+    }
+    if (n == 2 || n == 3)
+        return true;
+    (void)snprintf(what, sizeof what, "%d number%s%s; %s%s", n, n == 1 ? "" : "s",
+                   n == 1 ? " only" : "", row_advice,
+                   n == MOST ? " (a time before them has to go)" : "");
+    return fail(reader, 1, what);
+}
+
 static bool read_row(struct reader *reader, const char *line)
 {
     static const char blanks[] = " \t\r\n,";
+    float value[MOST];
     int n = 0;
     const char *at = line + strspn(line, blanks);
     if (*at == '\0' || *at == '#')
         return true;
     while (*at != '\0') {
         char *end;
-        float value = strtof(at, &end);
+        float number = strtof(at, &end);
         int column = (int)(at - line) + 1;
-        if (end == at || (*end != '\0' && strchr(blanks, *end) == NULL) || !isfinite(value))
-            return fail(reader, column, "a row is two or three finite numbers: x y [z]");
-        if (++n > 3)
-            return fail(reader, column, "a fourth number; a row is x y or x y z");
-        if (!add(reader, value))
-            return false;
+        if (end == at || (*end != '\0' && strchr(blanks, *end) == NULL) || !isfinite(number))
+            return fail(reader, column, "no finite number; a row is x y, x y z or a pose");
+        if (n == MOST)
+            return fail(reader, column, "a ninth number; a row is x y, x y z or a pose");
+        value[n++] = number;
         at = end + strspn(end, blanks);
     }
-    if (n < 2)
-        return fail(reader, 1, "one number only; a row is x y or x y z");
-    if (reader->dimensions != 0 && n != reader->dimensions)
-        return fail(reader, 1,
-                    n == 2 ? "two numbers, but the rows before have three"
-                           : "three numbers, but the rows before have two");
-    reader->dimensions = n;
+    if (!check_count(reader, n, value))
+        return false;
+    if (reader->numbers != 0 && n != reader->numbers) {
+        char what[80];
+        (void)snprintf(what, sizeof what, "%d numbers, but the rows before have %d", n,
+                       reader->numbers);
+        return fail(reader, 1, what);
+    }
+    reader->numbers = n;
+    reader->dimensions = n == POSE ? 3 : n;
+    for (int i = 0; i < reader->dimensions; i++)
+        if (!add(reader, value[i]))
+            return false;
     return true;
 }
 

@@ -1,4 +1,4 @@
-/* handle.h: a file with the trajectory of one point, rows x y or x y z between blanks. */
+/* handle.h: a file with the trajectory of one point: rows x y, x y z or poses, between blanks. */
 #ifndef GRRL_PERCEIVE_HANDLE_H
 #define GRRL_PERCEIVE_HANDLE_H
 
@@ -15,7 +15,8 @@ struct grrl_handle {
     float *rows_m;
 };
 
-/* scale: metres in a unit of the file. Empty lines and lines that begin with # are left out. */
+/* scale: metres in a unit of the file. Empty lines and lines that begin with # are left out. Of a
+ * pose (x y z and a quaternion, in any order of its four) the position counts. */
 bool grrl_handle_read(FILE *file, const char *path, float scale, struct grrl_handle *handle,
                       struct grrl_tracks_error *error);
 void grrl_handle_free(struct grrl_handle *handle);

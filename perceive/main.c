@@ -4,22 +4,20 @@
  * Exit status: 0 fine, 1 the input is wrong or cannot be read, 2 wrong command line.
  */
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "doubts.h"
 #include "handle.h"
+#include "motion.h"
 #include "options.h"
 #include "report.h"
 #include "tracks.h"
 
 #include "grrl/grrl.h"
 
-enum { EXIT_FINE = 0, EXIT_INPUT = 1, EXIT_USAGE = 2 };
+enum { EXIT_FINE = 0, EXIT_INPUT = 1 };
 enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
-
-/* Points within less than this, in standard deviations of the noise, show nothing. */
-#define SMALL_WORLD 20.0f
 
 /* Links from this length on are called large; as for the learner. */
 #define LARGE_M 0.15f
@@ -172,7 +170,8 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 /*
  * The recording as pushes: frames at rest are averaged, others become keyframes where something has
  * moved enough. What was believed after a push counts in what is believed after the next, as it
- * does in the agent. The last frame shows where all has come to lie.
+ * does in the agent. The last frame shows where all has come to lie. Ends early where there are
+ * more tracks than the library holds.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
@@ -180,6 +179,8 @@ static enum grrl_status observe(const struct grrl_tracks *tracks)
         struct grrl_frame frame = frame_of(tracks, i);
         bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
         grrl_perception_observe(&perception, &frame, pushing);
+        if (perception.counts.overflow > 0)
+            return GRRL_ERR_FULL;
         if (tracks->frame[i].settled) {
             enum grrl_status status = grrl_perception_update(&perception);
             if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen: perhaps later */
@@ -205,64 +206,39 @@ static enum grrl_status print_term(const struct grrl_model *model, float large_m
     return status == GRRL_OK ? grrl_term_print(&store, term, capacity, text, NULL) : status;
 }
 
-/* A file in metres, taken for millimetres, is all noise. */
-static void warn_of_a_small_world(const struct grrl_tracks *tracks, struct unit unit, float noise_m)
+static FILE *open_output(const char *path)
 {
-    float low[2] = {INFINITY, INFINITY};
-    float high[2] = {-INFINITY, -INFINITY};
-    for (size_t i = 0; i < tracks->n_points; i++) {
-        const float at[2] = {tracks->x[i], tracks->y[i]};
-        for (int axis = 0; axis < 2; axis++) {
-            low[axis] = fminf(low[axis], at[axis]);
-            high[axis] = fmaxf(high[axis], at[axis]);
-        }
-    }
-    float extent = fmaxf(high[0] - low[0], high[1] - low[1]);
-    if (extent < SMALL_WORLD * noise_m)
-        (void)fprintf(
-            stderr,
-            "grrl-perceive: warning: all points lie within %.3g %s, and the noise is %.3g "
-            "%s; is the unit right? See --unit\n",
-            (double)(extent / unit.metres), unit.name, (double)(noise_m / unit.metres), unit.name);
-}
-
-static void warn_of_losses(const struct grrl_report *report, const struct grrl_tracks *tracks)
-{
-    if (tracks->refused > 0)
-        (void)fprintf(stderr, "grrl-perceive: warning: %u damaged messages left out\n",
-                      (unsigned)tracks->refused);
-    if (report->counts->overflow > 0)
-        (void)fprintf(stderr,
-                      "grrl-perceive: warning: %u tracks, but this build holds %d at a time: %u "
-                      "points left out; build with a larger GRRL_MAX_FEATURES\n",
-                      report->tracks, GRRL_MAX_FEATURES, (unsigned)report->counts->overflow);
-    if (report->counts->refused > 0)
-        (void)fprintf(stderr,
-                      "grrl-perceive: warning: %u points too far from the origin left out; is the "
-                      "unit right? See --unit\n",
-                      (unsigned)report->counts->refused);
-    if (report->model->n_bodies == GRRL_MAX_LINKS)
-        (void)fprintf(stderr,
-                      "grrl-perceive: warning: %d bodies are all this build holds; there may be "
-                      "more\n",
-                      GRRL_MAX_LINKS);
+    FILE *file = fopen(path, "w");
+    if (file == NULL)
+        (void)fprintf(stderr, "grrl-perceive: %s: %s\n", path, strerror(errno));
+    return file;
 }
 
 static bool write_svg(const char *path, const struct grrl_report *report)
 {
-    FILE *file = fopen(path, "w");
-    if (file == NULL) {
-        (void)fprintf(stderr, "grrl-perceive: %s: %s\n", path, strerror(errno));
+    FILE *file = open_output(path);
+    if (file == NULL)
         return false;
-    }
     grrl_report_svg(file, report);
     return close_output(file, path);
+}
+
+static bool write_motion(const char *path, const struct grrl_report *report)
+{
+    FILE *file = open_output(path);
+    if (file == NULL)
+        return false;
+    bool good = grrl_motion_write(file, report);
+    if (!good)
+        (void)fail("out of memory");
+    return close_output(file, path) && good;
 }
 
 static int report_model(const struct grrl_perceive_options *options,
                         const struct grrl_tracks *tracks, struct unit unit, const char *profile)
 {
     static char term[TERM_BYTES];
+    static struct grrl_warnings warnings;
     const struct grrl_model *model = grrl_perception_model(&perception);
     enum grrl_status status = print_term(model, LARGE_M, term, sizeof term);
     if (status != GRRL_OK)
@@ -271,29 +247,51 @@ static int report_model(const struct grrl_perceive_options *options,
     struct grrl_report report = {.model = model,
                                  .perception = &perception,
                                  .counts = &perception.counts,
+                                 .recording = tracks,
+                                 .warnings = &warnings,
                                  .term = term,
                                  .unit = unit.name,
                                  .profile = profile,
                                  .per_metre = per_metre,
                                  .noise = (double)perception.config.noise_m * per_metre,
                                  .frames = (unsigned)tracks->n_frames,
-                                 .tracks = (unsigned)grrl_tracks_count_ids(tracks),
+                                 .tracks =
+                                     (unsigned)(grrl_tracks_count_ids(tracks) + tracks->left_out.n),
                                  .keyframes = perception.counts.keyframes_high,
                                  .y_down = strcmp(unit.name, "px") == 0};
-    warn_of_a_small_world(tracks, unit, perception.config.noise_m);
-    warn_of_losses(&report, tracks);
+    bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
+    grrl_doubt_input(tracks, &warnings);
+    grrl_doubt_unit(tracks, &report, said, &warnings);
+    grrl_doubt_losses(&report, &warnings);
+    grrl_warnings_print(stderr, &warnings);
     if (options->svg != NULL && !write_svg(options->svg, &report))
+        return EXIT_INPUT;
+    if (options->motion != NULL && !write_motion(options->motion, &report))
         return EXIT_INPUT;
     (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
+/* More tracks than the library holds: once more, with those that tell most. */
+static enum grrl_status observe_chosen(const struct grrl_perception_config *config,
+                                       struct grrl_tracks *tracks)
+{
+    if (!grrl_tracks_choose(tracks, GRRL_MAX_FEATURES))
+        return GRRL_ERR_FULL;
+    enum grrl_status status = grrl_perception_init(&perception, config);
+    return status == GRRL_OK ? observe(tracks) : status;
+}
+
 static int perceive_with(const struct grrl_perception_config *config,
-                         const struct grrl_perceive_options *options,
-                         const struct grrl_tracks *tracks, struct unit unit, const char *profile)
+                         const struct grrl_perceive_options *options, struct grrl_tracks *tracks,
+                         struct unit unit, const char *profile)
 {
     enum grrl_status status = grrl_perception_init(&perception, config);
     status = status == GRRL_OK ? observe(tracks) : status;
+    if (perception.counts.overflow > 0)
+        status = observe_chosen(config, tracks);
+    if (status == GRRL_ERR_NONE && perception.counts.refused > 0)
+        return fail("every point lies too far from the origin: pixels or millimetres? See --unit");
     if (status == GRRL_ERR_NONE)
         return fail("no point is visible in any frame");
     if (status != GRRL_OK)
@@ -325,12 +323,8 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
 int main(int argc, char **argv)
 {
     struct grrl_perceive_options options;
-    switch (grrl_perceive_options_parse(argc, argv, &options)) {
-    case GRRL_OPTIONS_BAD:
-        return EXIT_USAGE;
-    case GRRL_OPTIONS_DONE:
-        return EXIT_FINE;
-    default:
-        return options.handle != NULL ? perceive_handle(&options) : perceive_tracks(&options);
-    }
+    enum grrl_options_result parsed = grrl_perceive_options_parse(argc, argv, &options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
+    return options.handle != NULL ? perceive_handle(&options) : perceive_tracks(&options);
 }

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "cli/options.h"
+
 enum grrl_unit { GRRL_UNIT_AS_IN_FILE, GRRL_UNIT_M, GRRL_UNIT_MM, GRRL_UNIT_PX };
 
 enum grrl_profile { GRRL_PROFILE_OF_UNIT, GRRL_PROFILE_TRACKER, GRRL_PROFILE_CAMERA };
@@ -17,12 +19,11 @@ struct grrl_perceive_options {
     enum grrl_profile profile;
     float noise; /* in the unit of the file, 0: as the profile has it */
     bool noise_from_points;
-    int32_t trial; /* of a log, 0: the last */
+    int trial; /* of a log, 0: the last */
     bool json;
-    const char *svg; /* NULL: no picture */
+    const char *svg;    /* NULL: no picture */
+    const char *motion; /* CSV of how the joints move; NULL: none */
 };
-
-enum grrl_options_result { GRRL_OPTIONS_RUN, GRRL_OPTIONS_DONE, GRRL_OPTIONS_BAD };
 
 /* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
 enum grrl_options_result grrl_perceive_options_parse(int argc, char **argv,

@@ -9,12 +9,17 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "tracks.h"
+#include "warnings.h"
+
 #include "grrl/perception/perception.h"
 
 struct grrl_report {
     const struct grrl_model *model;
     const struct grrl_perception *perception; /* that has the model */
     const struct grrl_perception_counts *counts;
+    const struct grrl_tracks *recording; /* in metres, without what was left out */
+    const struct grrl_warnings *warnings;
     const char *term;
     const char *unit;    /* "m", "mm" or "px" */
     const char *profile; /* "tracker" or "camera" */
@@ -29,6 +34,10 @@ struct grrl_report {
 /* What is known of bodies a and b, in a word; *pair has the probabilities. */
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair);
+
+/* Of the points with a position in the input, those that are not used: lost, of tracks left out,
+ * outliers and refused ones. */
+double grrl_report_dropped_percent(const struct grrl_report *report);
 
 void grrl_report_text(FILE *file, const struct grrl_report *report);
 void grrl_report_json(FILE *file, const struct grrl_report *report);

@@ -1,6 +1,8 @@
+/* report_json.c: the answer for programs. Every text that is printed is ours (terms, names, units,
+ * warnings): nothing needs escaping. */
 #include "report.h"
 
-/* Every text that is printed is ours (terms, names, units): nothing needs escaping. */
+#include <inttypes.h>
 
 static void print_ids(FILE *file, const struct grrl_model *model, unsigned body)
 {
@@ -93,19 +95,60 @@ static void print_list(FILE *file, const struct grrl_report *report, const char 
     (void)fputs(n > 0 ? "\n  ],\n" : "],\n", file);
 }
 
+/* What was not used, and why. */
+static void print_dropped(FILE *file, const struct grrl_report *report)
+{
+    const struct grrl_perception_counts *counts = report->counts;
+    const struct grrl_tracks_lost *lost = &report->recording->lost;
+    const struct grrl_tracks_left_out *out = &report->recording->left_out;
+    (void)fprintf(file,
+                  "  \"dropped\": {\"outliers\": %u, \"refused\": %u, \"beyond_capacity\": %zu, "
+                  "\"lost\": %zu, \"percent\": %.4g},\n",
+                  (unsigned)counts->outliers, (unsigned)counts->refused,
+                  out->n_points + counts->overflow, lost->marked + lost->frozen,
+                  grrl_report_dropped_percent(report));
+    (void)fprintf(file, "  \"not_visible\": {\"empty\": %zu, \"marked\": %zu, \"frozen\": %zu},\n",
+                  lost->empty, lost->marked, lost->frozen);
+    (void)fprintf(file, "  \"left_out\": {\"tracks\": %zu, \"percent\": %.4g, \"points\": [",
+                  out->n, report->tracks > 0 ? 100.0 * (double)out->n / report->tracks : 0.0);
+    for (size_t i = 0; i < out->n; i++)
+        (void)fprintf(file, "%s%d", i == 0 ? "" : ", ", (int)out->id[i]);
+    (void)fputs("]},\n", file);
+}
+
+static void print_log(FILE *file, const struct grrl_tracks_log *log)
+{
+    if (log->n_sessions == 0)
+        return;
+    (void)fprintf(file,
+                  "  \"log\": {\"trial\": %" PRId32 ", \"session\": %" PRId64
+                  ", \"sessions\": %" PRIu32 ", \"interleaved\": %s, \"refused\": %" PRIu32
+                  ", \"damages\": %" PRIu32 ", \"damaged_bytes\": %" PRId64 ", \"whole\": %s},\n",
+                  log->trial, log->session, log->n_sessions, log->interleaved ? "true" : "false",
+                  log->refused, log->n_damages, log->damaged_bytes,
+                  log->holed || log->unended ? "false" : "true");
+}
+
+static void print_warnings(FILE *file, const struct grrl_warnings *warnings)
+{
+    (void)fputs("  \"warnings\": [", file);
+    for (unsigned i = 0; i < warnings->n; i++)
+        (void)fprintf(file, "%s\n    \"%s\"", i == 0 ? "" : ",", warnings->text[i]);
+    (void)fputs(warnings->n > 0 ? "\n  ],\n" : "],\n", file);
+}
+
 void grrl_report_json(FILE *file, const struct grrl_report *report)
 {
     const struct grrl_model *model = report->model;
-    const struct grrl_perception_counts *counts = report->counts;
     (void)fprintf(file, "{\n  \"format\": \"grrl-perceive 1\",\n  \"term\": \"%s\",\n",
                   report->term);
     (void)fprintf(file, "  \"unit\": \"%s\", \"profile\": \"%s\", \"noise\": %.6g,\n", report->unit,
                   report->profile, report->noise);
     (void)fprintf(file, "  \"frames\": %u, \"tracks\": %u, \"keyframes\": %u,\n", report->frames,
                   report->tracks, report->keyframes);
-    (void)fprintf(
-        file, "  \"dropped\": {\"outliers\": %u, \"refused\": %u, \"beyond_capacity\": %u},\n",
-        (unsigned)counts->outliers, (unsigned)counts->refused, (unsigned)counts->overflow);
+    print_dropped(file, report);
+    print_log(file, &report->recording->log);
+    print_warnings(file, report->warnings);
     print_list(file, report, "bodies", model->n_bodies, print_body);
     print_list(file, report, "joints", model->n_joints, print_joint);
     print_pairs(file, report);

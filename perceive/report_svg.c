@@ -1,3 +1,4 @@
+/* report_svg.c: the answer for the eye. */
 #include "report.h"
 
 #include <string.h>

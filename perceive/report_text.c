@@ -1,3 +1,4 @@
+/* report_text.c: the answer for people. */
 #include "report.h"
 
 static unsigned count_features(const struct grrl_model *model, unsigned body)
@@ -24,6 +25,17 @@ static void print_bodies(FILE *file, const struct grrl_report *report)
     (void)fprintf(file, "  background %u features, unassigned %u\n",
                   count_features(model, GRRL_FEATURE_BACKGROUND),
                   count_features(model, GRRL_FEATURE_NONE));
+}
+
+double grrl_report_dropped_percent(const struct grrl_report *report)
+{
+    const struct grrl_perception_counts *counts = report->counts;
+    const struct grrl_tracks *tracks = report->recording;
+    size_t gone = tracks->left_out.n_points + tracks->lost.marked + tracks->lost.frozen;
+    size_t all = tracks->n_points + gone;
+    double dropped = (double)gone + (double)counts->outliers + (double)counts->refused +
+                     (double)counts->overflow;
+    return all > 0 ? 100.0 * dropped / (double)all : 0.0;
 }
 
 static double square_root(double x)
@@ -99,7 +111,10 @@ void grrl_report_text(FILE *file, const struct grrl_report *report)
     (void)fprintf(file, "\n%u frames of %u tracks, %u keyframe%s, profile %s, noise %.3g %s\n",
                   report->frames, report->tracks, report->keyframes,
                   report->keyframes == 1 ? "" : "s", report->profile, report->noise, report->unit);
-    (void)fprintf(file, "points dropped: %u outliers, %u refused, %u beyond capacity\n",
-                  (unsigned)report->counts->outliers, (unsigned)report->counts->refused,
-                  (unsigned)report->counts->overflow);
+    (void)fprintf(
+        file, "points dropped: %u outliers, %u refused, %zu beyond capacity, %zu lost (%.1f%%)\n",
+        (unsigned)report->counts->outliers, (unsigned)report->counts->refused,
+        report->recording->left_out.n_points + report->counts->overflow,
+        report->recording->lost.marked + report->recording->lost.frozen,
+        grrl_report_dropped_percent(report));
 }

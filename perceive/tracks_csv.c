@@ -1,19 +1,22 @@
-#define _POSIX_C_SOURCE 200809L
-
+/* tracks_csv.c: rows of a table, one for each point of each frame, become a recording. */
 #include "tracks.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/types.h>
 
-enum column { FRAME, POINT, X, Y, VISIBLE, N_COLUMNS };
-enum { ABSENT = -1, MAX_FIELDS = 256 };
+#include "columns.h"
+#include "csv.h"
 
-static const char header_advice[] = "the header names the columns frame,point,x,y and perhaps "
-                                    "visible (x_px,y_px for pixels), separated by commas";
+#define LARGEST_WHOLE 9007199254740992.0 /* up to which a double counts every number */
+
+static const char position_advice[] =
+    "a position is a finite number; a point that was not seen has visible 0, or both cells empty";
+static const char comma_advice[] =
+    "is this a decimal comma, or one between thousands? Write decimal points";
 
 struct row {
     long long frame;
@@ -24,189 +27,220 @@ struct row {
     size_t line;
 };
 
+/* A cell to come back to. */
+struct place {
+    size_t line; /* 0: none yet */
+    int column;
+    char text[24];
+};
+
 struct reader {
-    const char *path;
-    struct grrl_tracks_error *error;
-    size_t line;
-    int place[N_COLUMNS]; /* of each column in a row, or ABSENT */
-    int n_fields;         /* of the header */
-    bool in_pixels;
+    struct grrl_csv csv;
+    struct grrl_columns columns;
     struct row *row;
     size_t n_rows;
     size_t capacity;
+    size_t n_empty; /* rows without a position */
+    /* of numbers between semicolons: */
+    struct place first_comma;
+    bool comma_is_decimal; /* one was seen that cannot stand between thousands */
+    struct place first_point;
 };
 
-/* A field of the line being read, without the blanks around it. */
-struct field {
-    char *text;
-    int column; /* of its first character, from 1 */
-};
-
-static bool fail(struct reader *reader, int column, const char *what, const char *text)
+static bool fail_at(struct reader *reader, const struct place *place, const char *what)
 {
-    (void)snprintf(reader->error->text, sizeof reader->error->text, "%.200s:%zu:%d: %.60s%s%.200s",
-                   reader->path, reader->line, column, text, *text != '\0' ? ": " : "", what);
+    reader->csv.line = place->line;
+    return grrl_csv_fail(&reader->csv, place->column, what, place->text);
+}
+
+static void remember(const struct reader *reader, const struct grrl_csv_field *field,
+                     struct place *place)
+{
+    if (place->line > 0)
+        return;
+    place->line = reader->csv.line;
+    place->column = field->column;
+    (void)snprintf(place->text, sizeof place->text, "%s", field->text);
+}
+
+/* Whether a number with one comma may be 1,234: one to three digits, no zero before, and three. */
+static bool may_be_thousands(const char *text, const char *comma)
+{
+    text += strspn(text, "+-");
+    return comma > text && comma - text <= 3 && *text != '0' && strlen(comma + 1) == 3 &&
+           strspn(comma + 1, "0123456789") == 3;
+}
+
+/* Between semicolons a comma may be a decimal one: it becomes a point. What the file as a whole
+ * says of its commas is asked in check_commas. */
+static void take_comma(struct reader *reader, const struct grrl_csv_field *field)
+{
+    char *comma = strchr(field->text, ',');
+    if (reader->csv.separator != ';')
+        return;
+    if (strchr(field->text, '.') != NULL) {
+        remember(reader, field, &reader->first_point);
+    } else if (comma != NULL && strchr(comma + 1, ',') == NULL) {
+        remember(reader, field, &reader->first_comma);
+        reader->comma_is_decimal =
+            reader->comma_is_decimal || !may_be_thousands(field->text, comma);
+        *comma = '.';
+    }
+}
+
+static bool check_commas(struct reader *reader)
+{
+    if (reader->first_comma.line == 0)
+        return true;
+    if (reader->first_point.line > 0)
+        return fail_at(reader, &reader->first_point,
+                       "a decimal point, but other numbers have a decimal comma");
+    return reader->comma_is_decimal || fail_at(reader, &reader->first_comma, comma_advice);
+}
+
+static bool looks_like_a_number(const char *text)
+{
+    return *text != '\0' && strspn(text, "+-.0123456789eE") == strlen(text);
+}
+
+/* A whole number, also as 12.0 or 1e+05. */
+static bool parse_whole(struct reader *reader, const struct grrl_csv_field *field, long long low,
+                        long long high, long long *value)
+{
+    char *end;
+    take_comma(reader, field);
+    if (!looks_like_a_number(field->text))
+        return false;
+    errno = 0;
+    *value = strtoll(field->text, &end, 10);
+    if (*end != '\0') {
+        double number = strtod(field->text, &end);
+        if (!(fabs(number) <= LARGEST_WHOLE) || floor(number) != number)
+            return false;
+        *value = (long long)number;
+    }
+    return *end == '\0' && errno == 0 && *value >= low && *value <= high;
+}
+
+static bool parse_position(struct reader *reader, const struct grrl_csv_field *field, float *value)
+{
+    char *end;
+    take_comma(reader, field);
+    *value = strtof(field->text, &end);
+    if (!looks_like_a_number(field->text) || *end != '\0' || !isfinite(*value))
+        return grrl_csv_fail(&reader->csv, field->column, position_advice, field->text);
+    return true;
+}
+
+static bool is_word(const char *text, const char *lower_case)
+{
+    while (*text != '\0' && tolower((unsigned char)*text) == *lower_case) {
+        text++;
+        lower_case++;
+    }
+    return *text == '\0' && *lower_case == '\0';
+}
+
+/* What exporters write for no number. */
+static bool is_missing(const char *text)
+{
+    static const char *const words[] = {"", "nan", "-nan", "na", "<na>", "none", "null"};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (is_word(text, words[i]))
+            return true;
     return false;
 }
 
-/* Cuts a line at its commas. The number of fields, MAX_FIELDS + 1 if there are more. */
-static int split(char *line, struct field *fields)
+static bool parse_visible(struct reader *reader, const struct grrl_csv_field *field, bool *visible)
 {
-    int n = 0;
-    char *at = line;
-    for (;;) {
-        char *end = at + strcspn(at, ",");
-        bool last = *end == '\0';
-        *end = '\0';
-        if (n == MAX_FIELDS)
-            return MAX_FIELDS + 1;
-        char *text = at + strspn(at, " \t");
-        fields[n++] = (struct field){text, (int)(text - line) + 1};
-        for (char *p = end; p > text && (p[-1] == ' ' || p[-1] == '\t');)
-            *--p = '\0';
-        if (last)
-            return n;
-        at = end + 1;
-    }
-}
-
-static int column_of_name(const char *name, bool *in_pixels)
-{
-    static const char *const names[] = {"frame", "point", "x", "y", "visible"};
-    for (int i = 0; i < N_COLUMNS; i++)
-        if (strcmp(name, names[i]) == 0)
-            return i;
-    *in_pixels = *in_pixels || strcmp(name, "x_px") == 0 || strcmp(name, "y_px") == 0;
-    return strcmp(name, "x_px") == 0 ? X : strcmp(name, "y_px") == 0 ? Y : ABSENT;
-}
-
-static bool read_header(struct reader *reader, char *line)
-{
-    static const char *const missing[] = {"there is no column frame", "there is no column point",
-                                          "there is no column x or x_px",
-                                          "there is no column y or y_px"};
-    struct field fields[MAX_FIELDS];
-    if (strncmp(line, "\xef\xbb\xbf", 3) == 0) /* a byte order mark */
-        line += 3;
-    for (int i = 0; i < N_COLUMNS; i++)
-        reader->place[i] = ABSENT;
-    reader->n_fields = split(line, fields);
-    if (reader->n_fields > MAX_FIELDS)
-        return fail(reader, 1, "at most 256 columns, please", "");
-    for (int i = 0; i < reader->n_fields; i++) {
-        int column = column_of_name(fields[i].text, &reader->in_pixels);
-        if (column == ABSENT)
-            continue;
-        if (reader->place[column] != ABSENT)
-            return fail(reader, fields[i].column, "another column means the same", fields[i].text);
-        reader->place[column] = i;
-    }
-    for (int i = FRAME; i <= Y; i++)
-        if (reader->place[i] == ABSENT)
-            return fail(reader, 1, header_advice, missing[i]);
-    const struct field *y = &fields[reader->place[Y]];
-    if (reader->in_pixels &&
-        (strcmp(y->text, "y") == 0 || strcmp(fields[reader->place[X]].text, "x") == 0))
-        return fail(reader, y->column, "one of x and y is in pixels, the other not", y->text);
+    long long number = is_word(field->text, "true");
+    if (number == 0 && !is_word(field->text, "false") && !parse_whole(reader, field, 0, 1, &number))
+        return grrl_csv_fail(&reader->csv, field->column,
+                             reader->columns.occluded ? "occluded is 0 or 1, true or false"
+                                                      : "visible is 0 or 1, true or false",
+                             field->text);
+    *visible = (number != 0) != reader->columns.occluded;
     return true;
 }
 
-static bool parse_whole(const char *text, long long low, long long high, long long *value)
+static bool parse_xy(struct reader *reader, const struct grrl_csv_field *x,
+                     const struct grrl_csv_field *y, struct row *row)
 {
-    char *end;
-    errno = 0;
-    *value = strtoll(text, &end, 10);
-    return end != text && *end == '\0' && errno == 0 && *value >= low && *value <= high;
+    if (is_missing(x->text) && is_missing(y->text)) {
+        row->visible = false;
+        reader->n_empty++;
+        return true;
+    }
+    return parse_position(reader, x, &row->x) && parse_position(reader, y, &row->y);
 }
 
-static bool parse_position(struct reader *reader, const struct field *field, float *value)
+static bool parse_row(struct reader *reader, const struct grrl_csv_field *fields, struct row *row)
 {
-    char *end;
-    *value = strtof(field->text, &end);
-    if (end == field->text || *end != '\0' || !isfinite(*value))
-        return fail(reader, field->column,
-                    "a position is a finite number; a point that was not seen has visible 0",
-                    field->text);
-    return true;
-}
-
-static bool parse_row(struct reader *reader, const struct field *fields, struct row *row)
-{
-    const struct field *frame = &fields[reader->place[FRAME]];
-    const struct field *point = &fields[reader->place[POINT]];
+    const int *place = reader->columns.place;
+    const struct grrl_csv_field *frame = &fields[place[GRRL_COLUMN_FRAME]];
+    const struct grrl_csv_field *point = &fields[place[GRRL_COLUMN_POINT]];
     long long number;
-    if (!parse_whole(frame->text, LLONG_MIN + 1, LLONG_MAX, &row->frame))
-        return fail(reader, frame->column, "a frame is a whole number", frame->text);
-    if (!parse_whole(point->text, INT32_MIN, INT32_MAX, &number))
-        return fail(reader, point->column, "a point is a whole number of 32 bits", point->text);
-    row->point = (int32_t)number;
-    row->visible = true;
-    if (reader->place[VISIBLE] != ABSENT) {
-        const struct field *visible = &fields[reader->place[VISIBLE]];
-        if (!parse_whole(visible->text, 0, 1, &number))
-            return fail(reader, visible->column, "visible is 0 or 1", visible->text);
-        row->visible = number != 0;
-    }
-    row->x = row->y = 0.0f;
-    return !row->visible || (parse_position(reader, &fields[reader->place[X]], &row->x) &&
-                             parse_position(reader, &fields[reader->place[Y]], &row->y));
+    if (!parse_whole(reader, frame, LLONG_MIN + 1, LLONG_MAX, &row->frame))
+        return grrl_csv_fail(&reader->csv, frame->column,
+                             "a frame is a whole number; count the times of a file in seconds",
+                             frame->text);
+    if (!parse_whole(reader, point, INT32_MIN, INT32_MAX, &number))
+        return grrl_csv_fail(&reader->csv, point->column, "a point is a whole number of 32 bits",
+                             point->text);
+    *row = (struct row){row->frame, (int32_t)number, 0.0f, 0.0f, true, reader->csv.line};
+    if (place[GRRL_COLUMN_VISIBLE] != GRRL_COLUMN_ABSENT &&
+        !parse_visible(reader, &fields[place[GRRL_COLUMN_VISIBLE]], &row->visible))
+        return false;
+    return !row->visible ||
+           parse_xy(reader, &fields[place[GRRL_COLUMN_X]], &fields[place[GRRL_COLUMN_Y]], row);
 }
 
-static bool read_row(struct reader *reader, char *line)
+static bool fail_ragged(struct reader *reader, const struct grrl_csv_field *fields, int n)
 {
-    struct field fields[MAX_FIELDS];
-    int n = split(line, fields);
-    if (n != reader->n_fields) {
-        char what[80];
-        (void)snprintf(what, sizeof what, "%d fields, but the header has %d", n, reader->n_fields);
-        return fail(reader, 1, what, "");
-    }
+    char what[80];
+    int expected = reader->columns.n_fields;
+    (void)snprintf(what, sizeof what, "%d field%s, but the header has %d", n, n == 1 ? "" : "s",
+                   expected);
+    return grrl_csv_fail(&reader->csv,
+                         n > expected ? fields[expected].column : reader->csv.past_end, what, "");
+}
+
+static bool read_row(struct reader *reader)
+{
+    struct grrl_csv_field fields[GRRL_CSV_MAX_FIELDS];
+    int n = grrl_csv_split(&reader->csv, fields);
+    if (n < 0)
+        return false;
+    if (n != reader->columns.n_fields)
+        return fail_ragged(reader, fields, n);
     if (reader->n_rows == reader->capacity) {
         size_t capacity = reader->capacity == 0 ? 1024 : 2 * reader->capacity;
         struct row *grown = realloc(reader->row, capacity * sizeof *grown);
         if (grown == NULL)
-            return fail(reader, 1, "out of memory", "");
+            return grrl_csv_fail(&reader->csv, 1, "out of memory", "");
         reader->row = grown;
         reader->capacity = capacity;
     }
-    struct row *row = &reader->row[reader->n_rows];
-    row->line = reader->line;
-    if (!parse_row(reader, fields, row))
+    if (!parse_row(reader, fields, &reader->row[reader->n_rows]))
         return false;
     reader->n_rows++;
     return true;
 }
 
-static bool read_lines(struct reader *reader, FILE *file)
+static bool read_lines(struct reader *reader)
 {
-    char *line = NULL;
-    size_t size = 0;
-    ssize_t length;
-    bool header = false;
-    bool good = true;
-    while (good && (length = getline(&line, &size, file)) >= 0) {
-        reader->line++;
-        if (memchr(line, '\0', (size_t)length) != NULL) {
-            good = fail(reader, 1, "this is no text: there is a zero byte in it", "");
-            break;
-        }
-        line[strcspn(line, "\r\n")] = '\0';
-        if (line[strspn(line, " \t")] == '\0')
-            continue;
-        good = header ? read_row(reader, line) : read_header(reader, line);
-        header = true;
-    }
-    free(line);
-    if (good && ferror(file)) {
-        reader->line++;
-        return fail(reader, 1, strerror(errno), "");
-    }
-    if (good && reader->n_rows == 0) {
-        reader->line++;
-        return fail(reader, 1, header ? "rows are needed below the header" : header_advice,
-                    "the file ends here");
-    }
-    return good;
+    enum grrl_csv_status status = grrl_csv_next_line(&reader->csv);
+    if (status == GRRL_CSV_END)
+        return grrl_csv_fail(&reader->csv, 1, grrl_columns_advice, "the file ends here");
+    if (status == GRRL_CSV_BAD || !grrl_columns_find(&reader->csv, &reader->columns))
+        return false;
+    while ((status = grrl_csv_next_line(&reader->csv)) == GRRL_CSV_LINE)
+        if (!read_row(reader))
+            return false;
+    if (status == GRRL_CSV_END && reader->n_rows == 0)
+        return grrl_csv_fail(&reader->csv, 1, "rows are needed below the header",
+                             "the file ends here");
+    return status == GRRL_CSV_END && check_commas(reader);
 }
 
 static int by_frame_and_point(const void *left, const void *right)
@@ -227,11 +261,11 @@ static bool check_twice(struct reader *reader)
         const struct row *b = &reader->row[i];
         if (a->frame == b->frame && a->point == b->point) {
             char what[160];
-            reader->line = b->line;
+            reader->csv.line = b->line;
             (void)snprintf(what, sizeof what,
                            "point %d of frame %lld stands in line %zu already; once is right",
                            (int)b->point, b->frame, a->line);
-            return fail(reader, 1, what, "");
+            return grrl_csv_fail(&reader->csv, 1, what, "");
         }
     }
     return true;
@@ -246,12 +280,12 @@ static bool build(struct reader *reader, struct grrl_tracks *tracks)
     tracks->y = malloc(n * sizeof *tracks->y);
     tracks->frame = malloc(n * sizeof *tracks->frame);
     if (tracks->id == NULL || tracks->x == NULL || tracks->y == NULL || tracks->frame == NULL)
-        return fail(reader, 1, "out of memory", "");
+        return grrl_csv_fail(&reader->csv, 1, "out of memory", "");
     for (size_t i = 0; i < n; i++) {
         const struct row *row = &reader->row[i];
         if (i == 0 || row->frame != reader->row[i - 1].frame)
-            tracks->frame[tracks->n_frames++] =
-                (struct grrl_tracks_frame){.first = tracks->n_points, .pushing = i > 0};
+            tracks->frame[tracks->n_frames++] = (struct grrl_tracks_frame){
+                .first = tracks->n_points, .number = row->frame, .pushing = i > 0};
         if (row->visible) {
             tracks->id[tracks->n_points] = row->point;
             tracks->x[tracks->n_points] = row->x;
@@ -260,21 +294,25 @@ static bool build(struct reader *reader, struct grrl_tracks *tracks)
             tracks->frame[tracks->n_frames - 1].n++;
         }
     }
-    tracks->in_pixels = reader->in_pixels;
+    tracks->in_pixels = reader->columns.in_pixels;
+    tracks->lost.empty = reader->n_empty;
     return true;
 }
 
 bool grrl_tracks_read_csv(FILE *file, const char *path, struct grrl_tracks *tracks,
                           struct grrl_tracks_error *error)
 {
-    struct reader reader = {.path = path, .error = error};
+    struct reader reader = {.csv = {.file = file, .path = path, .error = error}};
     *tracks = (struct grrl_tracks){0};
-    bool good = read_lines(&reader, file);
+    bool good = read_lines(&reader);
     if (good) {
         qsort(reader.row, reader.n_rows, sizeof *reader.row, by_frame_and_point);
         good = check_twice(&reader) && build(&reader, tracks);
     }
+    if (good && !grrl_tracks_drop_lost(tracks))
+        good = grrl_csv_fail(&reader.csv, 1, "out of memory", "");
     free(reader.row);
+    grrl_csv_free(&reader.csv);
     if (!good)
         grrl_tracks_free(tracks);
     return good;

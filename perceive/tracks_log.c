@@ -1,13 +1,33 @@
+/*
+ * tracks_log.c: one trial of an LCM log becomes a recording.
+ *
+ * The log is read twice: first to see whose messages are in it, then to take those of one session.
+ */
 #include "tracks.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <lcm/lcm.h>
-
-#include "log_check.h"
+#include "log_reader.h"
 #include "wire.h"
+
+struct session {
+    int64_t id;
+    size_t n_messages;
+    size_t n_turns; /* how often it began, or began again behind another */
+    bool has_wanted;
+};
+
+/* Whose messages are in a log. */
+struct survey {
+    int32_t wanted; /* trial, 0: any */
+    struct session *session;
+    size_t n;
+    size_t capacity;
+    size_t current;
+    uint32_t refused;
+    struct grrl_wire_why why;
+};
 
 /* Where a log's messages go: a recording that grows. */
 struct collector {
@@ -16,9 +36,65 @@ struct collector {
     size_t frames_capacity;
     int32_t wanted; /* trial, 0: the last */
     int64_t session;
-    int64_t seq; /* of the last frame taken; a lock-step sender repeats frames */
-    struct grrl_wire_why why;
+    int64_t seq;  /* of the last frame taken; a lock-step sender repeats frames */
+    bool in_it;   /* the last message of the session was of the recording */
+    bool damaged; /* since the last message of the session */
+    int32_t ended_trial;
+    bool tells_of_trials;
 };
+
+/* --- whose messages there are ----------------------------------------------------------------- */
+
+static struct session *find_session(struct survey *survey, int64_t id)
+{
+    for (size_t i = 0; i < survey->n; i++)
+        if (survey->session[i].id == id)
+            return &survey->session[i];
+    if (survey->n == survey->capacity) {
+        size_t capacity = survey->capacity == 0 ? 8 : 2 * survey->capacity;
+        struct session *grown = realloc(survey->session, capacity * sizeof *grown);
+        if (grown == NULL)
+            return NULL;
+        survey->session = grown;
+        survey->capacity = capacity;
+    }
+    survey->session[survey->n] = (struct session){.id = id};
+    return &survey->session[survey->n++];
+}
+
+static bool survey_points(struct survey *survey, const grrl_points_t *message)
+{
+    struct session *session = find_session(survey, message->session_id);
+    if (session == NULL)
+        return false;
+    size_t index = (size_t)(session - survey->session);
+    session->n_turns += session->n_messages == 0 || index != survey->current;
+    session->n_messages++;
+    session->has_wanted =
+        session->has_wanted || survey->wanted == 0 || message->trial_id == survey->wanted;
+    survey->current = index;
+    return true;
+}
+
+/* The session to read; NULL: none has the trial. */
+static const struct session *choose_session(const struct survey *survey, bool *interleaved)
+{
+    const struct session *last = NULL;
+    const struct session *largest = NULL;
+    *interleaved = false;
+    for (size_t i = 0; i < survey->n; i++) {
+        const struct session *session = &survey->session[i];
+        *interleaved = *interleaved || session->n_turns > 1;
+        if (!session->has_wanted)
+            continue;
+        last = session;
+        if (largest == NULL || session->n_messages > largest->n_messages)
+            largest = session;
+    }
+    return *interleaved ? largest : last;
+}
+
+/* --- the recording ---------------------------------------------------------------------------- */
 
 /* Makes room for `capacity` items; false: the array is as it was. */
 static bool widen(void **array, size_t item, size_t capacity)
@@ -57,35 +133,43 @@ static bool make_room(struct collector *to, size_t points)
     return true;
 }
 
-/* A new session or trial begins a new recording; what was kept before goes. */
+/* A new trial begins a new recording; what was kept before goes. */
 static void follow_trial(struct collector *to, const grrl_points_t *message)
 {
-    if (message->session_id != to->session || message->trial_id != to->tracks->trial) {
-        to->tracks->n_points = 0;
-        to->tracks->n_frames = 0;
-        to->tracks->trial = message->trial_id;
-        to->session = message->session_id;
+    struct grrl_tracks *tracks = to->tracks;
+    if (tracks->n_frames == 0 || message->trial_id != tracks->log.trial) {
+        tracks->n_points = 0;
+        tracks->n_frames = 0;
+        tracks->log.trial = message->trial_id;
+        tracks->log.holed = false;
         to->seq = 0;
     }
+    tracks->log.holed = tracks->log.holed || to->damaged;
+    to->in_it = true;
 }
 
 static bool take(struct collector *to, const struct grrl_wire_points *points)
 {
     const grrl_points_t *message = &points->message;
-    if (to->wanted != 0 && message->trial_id != to->wanted)
+    struct grrl_tracks *tracks = to->tracks;
+    if (message->session_id != to->session)
         return true;
-    follow_trial(to, message);
-    if (message->seq <= to->seq)
+    if (to->wanted != 0 && message->trial_id != to->wanted)
+        to->in_it = false;
+    else
+        follow_trial(to, message);
+    to->damaged = false;
+    if (!to->in_it || message->seq <= to->seq)
         return true;
     to->seq = message->seq;
     size_t n = (size_t)message->n_points;
     if (!make_room(to, n))
         return false;
-    struct grrl_tracks *tracks = to->tracks;
     bool first = tracks->n_frames == 0;
     bool rest = message->phase == GRRL_POINTS_T_REST || message->phase == GRRL_POINTS_T_SETTLED;
     tracks->frame[tracks->n_frames++] =
         (struct grrl_tracks_frame){.first = tracks->n_points,
+                                   .number = message->seq,
                                    .n = (uint32_t)n,
                                    .pushing = !rest && !first,
                                    .settled = message->phase == GRRL_POINTS_T_SETTLED};
@@ -96,32 +180,83 @@ static bool take(struct collector *to, const struct grrl_wire_points *points)
     return true;
 }
 
-static bool take_event(struct collector *to, const lcm_eventlog_event_t *event)
+static bool is_on(const struct grrl_log_event *event, const char *channel)
 {
-    static struct grrl_wire_points points;
-    size_t length = strlen(GRRL_CHANNEL_POINTS);
-    if (event->channellen != (int32_t)length ||
-        memcmp(event->channel, GRRL_CHANNEL_POINTS, length) != 0)
-        return true;
-    if (event->datalen < 0 ||
-        !grrl_wire_decode_points(event->data, (uint32_t)event->datalen, &points, &to->why)) {
-        to->tracks->refused++;
-        return true;
-    }
-    return take(to, &points);
+    size_t length = strlen(channel);
+    return event->channel_length == length && memcmp(event->channel, channel, length) == 0;
 }
 
-static void describe_failure(const struct collector *from, const char *path,
+static void take_trial(struct collector *to, const struct grrl_log_event *event)
+{
+    grrl_trial_t message;
+    struct grrl_wire_why why;
+    if (!grrl_wire_decode_trial(event->data, (uint32_t)event->data_length, &message, &why) ||
+        message.session_id != to->session)
+        return;
+    to->tells_of_trials = true;
+    if (message.phase != GRRL_TRIAL_T_RUNNING && message.trial_id > to->ended_trial)
+        to->ended_trial = message.trial_id;
+}
+
+static void note_damage(struct collector *to, const struct grrl_log_damage *damage)
+{
+    struct grrl_tracks_log *log = &to->tracks->log;
+    if (log->n_damages++ == 0) {
+        log->damaged_at = damage->from;
+        log->whole_at = damage->to;
+    }
+    log->damaged_bytes += damage->to - damage->from;
+    log->holed = log->holed || to->in_it;
+    to->damaged = true;
+}
+
+/* --- both readings ---------------------------------------------------------------------------- */
+
+/* Reads the log for the survey, or for the collector if there is one. */
+static bool read_events(const char *path, struct survey *survey, struct collector *to,
+                        struct grrl_tracks_error *error)
+{
+    static struct grrl_wire_points points;
+    struct grrl_log_reader reader;
+    struct grrl_log_event event;
+    struct grrl_log_damage damage;
+    if (!grrl_log_open(&reader, path, error))
+        return false;
+    if (to != NULL)
+        to->tracks->log.size = reader.size;
+    enum grrl_log_step step;
+    bool good = true;
+    while (good && (step = grrl_log_next(&reader, &event, &damage, error)) < GRRL_LOG_END) {
+        if (step == GRRL_LOG_DAMAGE) {
+            if (to != NULL)
+                note_damage(to, &damage);
+        } else if (!is_on(&event, GRRL_CHANNEL_POINTS)) {
+            if (to != NULL && is_on(&event, GRRL_CHANNEL_TRIAL))
+                take_trial(to, &event);
+        } else if (grrl_wire_decode_points(event.data, (uint32_t)event.data_length, &points,
+                                           &survey->why)) {
+            good = to != NULL ? take(to, &points) : survey_points(survey, &points.message);
+        } else if (to == NULL) {
+            survey->refused++;
+        }
+        if (!good)
+            (void)snprintf(error->text, sizeof error->text, "%.200s: out of memory", path);
+    }
+    grrl_log_close(&reader);
+    return good && step == GRRL_LOG_END;
+}
+
+static void describe_failure(const struct survey *survey, const char *path,
                              struct grrl_tracks_error *error)
 {
-    if (from->wanted != 0)
+    if (survey->n > 0)
         (void)snprintf(error->text, sizeof error->text,
                        "%.200s: no points of trial %d; leave --trial away for the last one", path,
-                       (int)from->wanted);
-    else if (from->tracks->refused > 0)
+                       (int)survey->wanted);
+    else if (survey->refused > 0)
         (void)snprintf(error->text, sizeof error->text,
                        "%.200s: not one of %u messages on %s is whole: %.120s", path,
-                       (unsigned)from->tracks->refused, GRRL_CHANNEL_POINTS, from->why.text);
+                       (unsigned)survey->refused, GRRL_CHANNEL_POINTS, survey->why.text);
     else
         (void)snprintf(error->text, sizeof error->text,
                        "%.200s: an LCM log with messages on %s is needed, this has none", path,
@@ -131,30 +266,29 @@ static void describe_failure(const struct collector *from, const char *path,
 bool grrl_tracks_read_log(const char *path, int32_t trial, struct grrl_tracks *tracks,
                           struct grrl_tracks_error *error)
 {
+    struct survey survey = {.wanted = trial};
     struct collector to = {.tracks = tracks, .wanted = trial};
-    struct grrl_log_why log_why;
     *tracks = (struct grrl_tracks){0};
-    if (!grrl_log_check(path, &log_why)) {
-        (void)snprintf(error->text, sizeof error->text, "%s", log_why.text);
-        return false;
+    const struct session *session = NULL;
+    bool good = read_events(path, &survey, NULL, error);
+    if (good) {
+        session = choose_session(&survey, &tracks->log.interleaved);
+        if (session == NULL)
+            describe_failure(&survey, path, error);
     }
-    lcm_eventlog_t *log = lcm_eventlog_create(path, "r");
-    if (log == NULL) {
-        (void)snprintf(error->text, sizeof error->text, "%.200s: %s", path, strerror(errno));
-        return false;
+    good = session != NULL;
+    if (good) {
+        to.session = session->id;
+        tracks->log.session = session->id;
+        tracks->log.n_sessions = (uint32_t)survey.n;
+        tracks->log.refused = survey.refused;
+        good = read_events(path, &survey, &to, error);
+        if (good && tracks->n_frames == 0)
+            describe_failure(&survey, path, error);
+        good = good && tracks->n_frames > 0;
+        tracks->log.unended = to.tells_of_trials && to.ended_trial < tracks->log.trial;
     }
-    bool good = true;
-    lcm_eventlog_event_t *event;
-    while (good && (event = lcm_eventlog_read_next_event(log)) != NULL) {
-        good = take_event(&to, event);
-        lcm_eventlog_free_event(event);
-    }
-    lcm_eventlog_destroy(log);
-    if (!good)
-        (void)snprintf(error->text, sizeof error->text, "%.200s: out of memory", path);
-    else if (tracks->n_frames == 0)
-        describe_failure(&to, path, error);
-    good = good && tracks->n_frames > 0;
+    free(survey.session);
     if (!good)
         grrl_tracks_free(tracks);
     return good;

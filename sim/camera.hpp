@@ -33,7 +33,8 @@ struct CameraLook {
     double brightness = 1.0;    /* of everything, 0 .. 2 */
 };
 
-/* Sets what the text says, as in "noise=3,blur=1"; returns why not, or an empty text. */
+/* Sets what the text says, as in "noise=3,blur=1"; returns an empty text, or what it must be: "a
+ * number from 0 to 30 for noise". */
 std::string parse_camera_look(const std::string &text, CameraLook &look);
 
 /* The names that parse_camera_look knows, with their ranges, a line each. */

@@ -33,6 +33,7 @@ const Entry entries[] = {
     {"brightness", 0, 2, &CameraLook::brightness, nullptr, "of everything"},
 };
 
+/* Like parse_camera_look, for one of them. */
 std::string parse_entry(const std::string &item, CameraLook &look)
 {
     size_t equals = item.find('=');
@@ -47,9 +48,9 @@ std::string parse_entry(const std::string &item, CameraLook &look)
         bool good = end != text && *end == '\0' && value >= entry.low && value <= entry.high;
         if (!good || (whole && (value != static_cast<int>(value) || static_cast<int>(value) % 2))) {
             std::ostringstream message;
-            message << item << ": " << name << " must be " << (whole ? "an even" : "a")
-                    << " number from " << entry.low << " to " << entry.high << ", as in " << name
-                    << "=" << (whole ? 480.0 : entry.high / 2.0);
+            message << (whole ? "an even" : "a") << " number from " << entry.low << " to "
+                    << entry.high << " for " << name << ", as in " << name << "="
+                    << (whole ? 480.0 : entry.high / 2.0);
             return message.str();
         }
         if (whole)
@@ -61,7 +62,7 @@ std::string parse_entry(const std::string &item, CameraLook &look)
     std::string names;
     for (const Entry &entry : entries)
         names += std::string(names.empty() ? "" : ", ") + entry.name;
-    return item + ": must be one of " + names + ", with = and a number";
+    return "NAME=X, separated by commas, with a NAME out of " + names;
 }
 
 } // namespace

@@ -1,3 +1,4 @@
+/* Spanning forests, poses from joint values, and Newton steps that close loops. */
 #include "kinematics.hpp"
 
 #include <cstddef>

@@ -253,14 +253,9 @@ int run(const Options &options, ObjectSpec object, lcm_t *lcm)
 int main(int argc, char **argv)
 {
     Options options;
-    switch (parse_options(argc, argv, options)) {
-    case OptionsResult::DONE:
-        return 0;
-    case OptionsResult::BAD:
-        return 2;
-    case OptionsResult::RUN:
-        break;
-    }
+    grrl_options_result parsed = parse_options(argc, argv, options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     Result<ObjectSpec> object = object_from_text(options.object);
     if (!object) {
         (void)std::fprintf(stderr, "grrl-sim: --object: %s\n", object.error.c_str());

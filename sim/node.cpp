@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "adapter.hpp"
+#include "grrl/base/settling.h"
 #include "structure.hpp"
 
 namespace grrl_sim
@@ -11,18 +13,8 @@ namespace grrl_sim
 namespace
 {
 
-constexpr int rest_frames_to_settle = 10;
 constexpr int64_t silence_us = 1000000;
 constexpr int most_looks = 10; /* at a scene in which the agent finds nothing to push */
-
-/* The n-th trial of a seed has its own object pose, noise and friction. */
-uint64_t trial_seed(uint64_t seed, int32_t trial_id)
-{
-    grrl_random random;
-    grrl_random_init(&random, seed, static_cast<uint64_t>(trial_id));
-    uint64_t high = grrl_random_next(&random);
-    return high << 32 | grrl_random_next(&random);
-}
 
 int8_t reason_on_the_wire(PushReason reason)
 {
@@ -39,16 +31,10 @@ int8_t reason_on_the_wire(PushReason reason)
     return GRRL_PUSH_STATUS_T_NONE;
 }
 
-PushCommand push_of(const grrl_push_command_t &command)
+PushCommand push_of(const grrl_push_command_t &c)
 {
-    PushCommand push;
-    push.start_m = {static_cast<double>(command.start[0]), static_cast<double>(command.start[1])};
-    push.end_m = {static_cast<double>(command.end[0]), static_cast<double>(command.end[1])};
-    push.travel_m = static_cast<double>(command.travel);
-    push.speed_m_s = static_cast<double>(command.speed);
-    push.force_limit_n = static_cast<double>(command.force);
-    push.timeout_s = static_cast<double>(command.timeout);
-    return push;
+    return command_of(
+        {{c.start[0], c.start[1]}, {c.end[0], c.end[1]}, c.travel, c.speed, c.force, c.timeout});
 }
 
 } // namespace
@@ -334,7 +320,7 @@ int8_t Node::move_on()
         }
         return GRRL_POINTS_T_PUSHING;
     }
-    if (++rest_frames_ < rest_frames_to_settle)
+    if (++rest_frames_ < GRRL_SETTLING_FRAMES)
         return GRRL_POINTS_T_REST;
     stage_ = Stage::DECIDING;
     return GRRL_POINTS_T_SETTLED;
@@ -353,16 +339,7 @@ void Node::send_frame()
     if (config_.camera != nullptr)
         return take_picture();
     world_->observe(frame_);
-    points.n_points = 0;
-    for (const TrackedFeature &feature : frame_.features) {
-        int32_t i = points.n_points;
-        if (i == GRRL_WIRE_MAX_POINTS)
-            break;
-        points.id[i] = static_cast<int32_t>(feature.id);
-        points.x[i] = static_cast<float>(feature.x_m);
-        points.y[i] = static_cast<float>(feature.y_m);
-        points.n_points++;
-    }
+    points.n_points = copy_points(frame_, GRRL_WIRE_MAX_POINTS, points.id, points.x, points.y);
     publish_frame();
 }
 

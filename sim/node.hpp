@@ -19,11 +19,8 @@
 
 #include "camera.hpp"
 #include "supervisor.hpp"
-#include "world.hpp"
-
-extern "C" {
 #include "wire.h"
-}
+#include "world.hpp"
 
 namespace grrl_sim
 {
@@ -84,7 +81,7 @@ public:
 private:
     enum class Stage {
         OFFER,    /* a trial is announced, the agent has not agreed yet */
-        RESTING,  /* ten frames at rest */
+        RESTING,  /* until the scene has settled */
         DECIDING, /* settled: model, judgement, next push */
         PUSHING,
         ENDED, /* the agent has not agreed yet */

@@ -1,8 +1,10 @@
+/* Objects from chains and terms, with the default dimensions. */
 #include "object.hpp"
 
 #include <algorithm>
 #include <cstring>
 
+#include "grrl/structure/term.h"
 #include "kinematics.hpp"
 #include "object_file.hpp"
 
@@ -14,30 +16,30 @@ namespace
 
 constexpr uint16_t term_capacity = 1024;
 
-std::string name_text(const grrl_name &name)
-{
-    const char *letter = "?";
-    switch (name.kind) {
-    case GRRL_NAME_LINK:
-        letter = "l";
-        break;
-    case GRRL_NAME_FEATURES:
-        letter = "f";
-        break;
-    case GRRL_NAME_VARIABLE:
-        letter = "v";
-        break;
-    case GRRL_NAME_BACKGROUND:
-        return "lb";
-    default:
-        break;
-    }
-    return letter + std::to_string(name.number);
-}
-
 std::string at_position(const TermPosition &position, const std::string &message)
 {
     return std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + message;
+}
+
+/* l1, f1 or v1. */
+bool is_numbered(const std::string &name)
+{
+    return name.size() > 1 && std::string("lfv").find(name[0]) != std::string::npos &&
+           name.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+/* A bare word as a term. Most of them are names of files or objects with a part missing, and no
+ * links. */
+Result<ObjectSpec> object_from_word(const std::string &text)
+{
+    Result<ObjectSpec> object = object_from_term(text);
+    if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
+        object = Result<ObjectSpec>::bad("a single link of this name is written L(" + text + ")");
+    if (!object)
+        object.error = "'" + text +
+                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
+                       object.error;
+    return object;
 }
 
 } // namespace
@@ -139,7 +141,8 @@ Result<ObjectSpec> links_and_joints(const std::string &text, TermPosition *error
     }
     for (int i = 0; i < object.truth.n; i++) {
         LinkSpec link = default_link(static_cast<grrl_property>(object.truth.label[i] & 0xff));
-        link.name = name_text(names[i]);
+        char name[GRRL_NAME_BYTES];
+        link.name = grrl_term_name_text(&store, names[i], name);
         link.fixed = names[i].kind == GRRL_NAME_BACKGROUND;
         object.links.push_back(link);
     }
@@ -171,12 +174,7 @@ Result<ObjectSpec> object_from_text(const std::string &text)
         return object_from_file(text);
     if (capitals || text.empty())
         return object_from_chain(text);
-    Result<ObjectSpec> object = object_from_term(text);
-    if (!object)
-        object.error = "'" + text +
-                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
-                       object.error;
-    return object;
+    return object_from_word(text);
 }
 
 } // namespace grrl_sim

@@ -3,7 +3,8 @@
  *
  * object_from_text turns a description into an ObjectSpec:
  *   RPRPRPR                       a serial chain, one letter a joint
- *   R(l1, R(l5, R(l4, ..)))       a relational term: branches, loops, sizes, several objects
+ *   R(l1, R(l5, R(l4, ..)))       a relational term: branches, loops, sizes, several objects; its
+ *                                 links have any names a term takes, R(blade1, blade2)
  *   scissors.grrl                 a file with a term and dimensions (object_file.hpp)
  * World takes an ObjectSpec. Metres, kilograms, newtons, radians throughout.
  */
@@ -14,7 +15,7 @@
 #include <vector>
 
 #include "geometry.hpp"
-#include "grrl_c.hpp"
+#include "grrl/structure/graph.h"
 #include "result.hpp"
 
 namespace grrl_sim

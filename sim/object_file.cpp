@@ -1,3 +1,4 @@
+/* Reads objects with dimensions, and says which line is wrong. */
 #include "object_file.hpp"
 
 #include <cstdlib>

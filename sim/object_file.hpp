@@ -1,8 +1,8 @@
 /*
  * object_file.hpp: objects with dimensions, one statement a line, # starts a comment.
  *
- *   term D(lb, R(l1, l2))
- *       the structure, once, before the lines that refer to it
+ *   term D(lb, R(blade1, blade2))
+ *       the structure, once, before the lines that refer to it; the links are named freely (term.h)
  *   link NAME length_m width_m mass_kg
  *       the rectangle of a link; others keep the default
  *   joint A B lower upper friction anchor_a_x anchor_a_y anchor_b_x anchor_b_y [axis [angle]]

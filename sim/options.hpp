@@ -6,6 +6,8 @@
 #include <string>
 
 #include "camera.hpp"
+#include "cli/options.h"
+#include "tracker.hpp"
 
 namespace grrl_sim
 {
@@ -26,10 +28,7 @@ struct Options {
     std::string lcm_url;
 };
 
-enum class OptionsResult { RUN, DONE, BAD };
-
-/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
-OptionsResult parse_options(int argc, char **argv, Options &options);
+grrl_options_result parse_options(int argc, char **argv, Options &options);
 
 } // namespace grrl_sim
 

@@ -1,3 +1,4 @@
+/* The Box2D world: bodies, joints, friction and the finger. */
 #include "physics.hpp"
 
 #include <cstring>

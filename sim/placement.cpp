@@ -1,3 +1,4 @@
+/* Draws joint values and a place until nothing overlaps. */
 #include "placement.hpp"
 
 #include "kinematics.hpp"

@@ -1,3 +1,4 @@
+/* Checks a push, and names how it ended. */
 #include "push.hpp"
 
 #include <sstream>

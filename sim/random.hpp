@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "grrl_c.hpp"
+#include "grrl/base/random.h"
 
 namespace grrl_sim
 {
@@ -53,6 +53,15 @@ public:
 private:
     grrl_random state_;
 };
+
+/* The n-th trial of a seed has its own object pose, noise and friction. */
+inline uint64_t trial_seed(uint64_t seed, int32_t trial)
+{
+    grrl_random random;
+    grrl_random_init(&random, seed, static_cast<uint64_t>(trial));
+    uint64_t high = grrl_random_next(&random);
+    return high << 32 | grrl_random_next(&random);
+}
 
 } // namespace grrl_sim
 

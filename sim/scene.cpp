@@ -1,3 +1,4 @@
+/* Draws textured links and their shadows on a textured table, then light, lens and noise. */
 #include "scene.hpp"
 
 #include <opencv2/imgproc.hpp>

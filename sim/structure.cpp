@@ -1,3 +1,4 @@
+/* The graph of an object, and of a model on the wire. */
 #include "structure.hpp"
 
 namespace grrl_sim

@@ -3,10 +3,7 @@
 #define GRRL_SIM_STRUCTURE_HPP
 
 #include "object.hpp"
-
-extern "C" {
 #include "wire.h"
-}
 
 namespace grrl_sim
 {

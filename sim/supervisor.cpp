@@ -1,6 +1,9 @@
+/* Compares each model with the true structure. */
 #include "supervisor.hpp"
 
 #include <cstdlib>
+
+#include "grrl/structure/match.h"
 
 namespace grrl_sim
 {

@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "grrl_c.hpp"
+#include "grrl/structure/graph.h"
 
 namespace grrl_sim
 {

@@ -1,3 +1,4 @@
+/* Places features on links and table, and draws their noise. */
 #include "tracker.hpp"
 
 namespace grrl_sim

@@ -1,3 +1,4 @@
+/* Places the object, pushes it, and lets it come to rest. */
 #include "world.hpp"
 
 #include <sstream>

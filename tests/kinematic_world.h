@@ -168,7 +168,7 @@ static inline void world_move(struct kinematic_world *w, struct grrl_perception 
         struct grrl_frame frame = world_frame(w);
         grrl_perception_observe(p, &frame, true);
     }
-    world_rest(w, p, 10);
+    world_rest(w, p, GRRL_SETTLING_FRAMES);
 }
 
 static inline enum grrl_status world_push(struct kinematic_world *w, struct grrl_perception *p,

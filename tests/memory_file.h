@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "grrl/learner/relational_q/experience.h"
+#include "grrl/base/io.h"
 
 enum { MEMORY_FILE_BYTES = 1 << 16 };
 

@@ -19,7 +19,7 @@ static inline void start(uint64_t seed, const char *chain)
     world_add_chain(&world, chain, -0.4f, 0.0f);
     world_add_background(&world, 25);
     world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
 }
 

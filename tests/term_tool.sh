@@ -18,17 +18,12 @@ expect() {
     fi
 }
 
-usage='usage: grrl-term parse TERM
-       grrl-term graph [--dot] TERM
-       grrl-term canonical [--ignore-properties] TERM
-       grrl-term match [--all] A B
-       grrl-term --help | --version'
-
 expect 0 "grrl-term $version" --version
 
 # parse
 expect 0 'D(lb, R(L(s, f1), f2))' parse ' D( lb,R(L(s ,f1),f2) )'
 expect 0 'A(v3, 45)' parse 'A(v3, 45°)'
+expect 0 'R(blade1, L(s, Tip)) & R' parse 'R(L(blade1), L(s, Tip)) & R'
 expect 0 'R(l1, l2)' parse - <<'END'
 R(l1,
   l2)
@@ -53,11 +48,20 @@ link f2 l _ red
 joint P f1 f2
 joint R f3 f1' graph 'D(lb, R(L(s, f3), P(f1, L(l, _, red, f2))))'
 expect 0 'graph structure {
-  f1 [label="f1 s"];
-  lb [label="lb"];
-  f1 -- lb [label="R"];
+  "f1" [label="f1 s"];
+  "lb" [label="lb"];
+  "f1" -- "lb" [label="R"];
 }' graph --dot 'R(L(s, f1), lb)'
+expect 0 'graph structure {
+  "node" [label="node"];
+  "s" [label="s l"];
+  "node" -- "s" [label="P"];
+}' graph --dot 'P(node, L(l, s))'
+expect 0 'link blade1
+link blade2 l
+joint R blade1 blade2' graph 'D(lb, R(blade1, L(l, blade2)))'
 expect 1 'grrl-term: link l1 is joined to itself' graph 'R(l1, l1)'
+expect 1 'grrl-term: link tip is joined twice to blade1' graph 'R(blade1, tip) & P(tip, blade1)'
 expect 1 'grrl-term: an action is no structure' graph 'A(l1, 90)'
 
 # canonical: the wooden toy, written in two ways
@@ -68,6 +72,8 @@ expect 0 "$toy" canonical 'D(P(l4, R(R(l1, l2), l3)), lb)'
 expect 0 "$toy" canonical --ignore-properties 'R(L(s, f4), R(L(s, f3), P(L(l, f1), L(s, f2))))'
 expect 0 'D(v1, R(lb, L(s, v2)))
 hash 4dce33ed' canonical 'R(L(s, f1), lb) & f2'
+
+expect 0 "$toy" canonical 'R(stick, R(wheel, P(P, box)))'
 
 # match: the example of the paper's section V-D, and sub-structures
 expect 0 'isomorphic, ignoring property 1
@@ -86,24 +92,34 @@ f2 <-> l3' match 'R(f1, f2)' 'P(l1, R(l2, l3))'
 expect 0 'B is a sub-structure of A, ignoring properties 2 1
 f1 <-> l1
 f2 <-> l2' match 'R(P(L(s, red, f1), f2), f3)' 'P(L(l, l1), l2)'
+expect 0 'A is a sub-structure of B
+blade1 <-> arm
+blade2 <-> hand' match 'R(blade1, blade2)' 'P(base, R(arm, hand))'
 expect 1 'no match' match 'R(l1, l2)' 'P(l1, l2)'
-expect 1 'grrl-term: 1:1: expected a link or one of R, P, D, A, found '"'x'"'
-  x
-  ^' match l1 x
+expect 1 'grrl-term: 1:1: expected a link or one of R, P, D, A, found '"'9x'"'
+  9x
+  ^' match l1 9x
 
 # usage
-expect 2 "grrl-term: a command is missing
-$usage"
-expect 2 "grrl-term: unknown command pares
-$usage" pares l1
-expect 2 "grrl-term: unknown option --dot
-$usage" parse --dot l1
-expect 2 "grrl-term: too few terms for match
-$usage" match l1
-expect 2 "grrl-term: one term too many: l2
-$usage" parse l1 l2
+try='Try grrl-term --help'
+expect 2 "grrl-term: the command is parse, graph, canonical or match
+$try"
+expect 2 "grrl-term: the command is parse, graph, canonical or match
+$try" pares l1
+expect 2 "grrl-term: --dot goes with graph
+$try" parse --dot l1
+expect 2 "grrl-term: --ignore-properties goes with canonical
+$try" graph l1 --ignore-properties
+expect 2 "grrl-term: --all goes with match
+$try" --all canonical l1
+expect 2 "grrl-term: too few terms
+$try" match l1
+expect 2 "grrl-term: one term too many
+$try" parse l1 l2
+expect 2 "grrl-term: l3: one term too many
+$try" match l1 l2 l3
 expect 2 "grrl-term: only one term can come from standard input
-$usage" match - -
+$try" match - -
 
 help=$("$tool" --help) || failures=$((failures + 1))
 for word in parse graph canonical match --dot --ignore-properties --all 'Exit status'; do

@@ -8,45 +8,44 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/options.h"
 #include "grrl/structure/canonical.h"
 #include "grrl/structure/graph.h"
 #include "grrl/structure/match.h"
 #include "grrl/structure/term.h"
 
-#ifndef GRRL_VERSION
-#error "GRRL_VERSION comes from the build"
-#endif
-
-enum { EXIT_FINE = 0, EXIT_NO = 1, EXIT_USAGE = 2 };
+enum { EXIT_FINE = 0, EXIT_NO = 1 };
 enum { MAX_TEXT_BYTES = 65536, MAX_NODES = 16384 };
 
 /* Far more than the search of any structure of 32 links that is not made to be hard. */
 enum { MATCH_BUDGET = 10000000 };
 
-static const char usage[] = "usage: grrl-term parse TERM\n"
-                            "       grrl-term graph [--dot] TERM\n"
-                            "       grrl-term canonical [--ignore-properties] TERM\n"
-                            "       grrl-term match [--all] A B\n"
-                            "       grrl-term --help | --version\n";
-
-static const char help[] =
-    "\n"
-    "  parse      the term in its normal form\n"
-    "  graph      its links with their properties, and its joints, first discovered first;\n"
-    "             --dot: for graphviz\n"
-    "  canonical  one term and hash for all terms of the same structure;\n"
-    "             --ignore-properties: of the same kinematic structure\n"
-    "  match      whether A and B are the same structure, or one contains the other: with all\n"
-    "             properties, then with properties dropped from the last place to the first;\n"
-    "             the links of A with those of B in the first mapping, --all: in every one\n"
-    "\n"
-    "TERM is a term or - for standard input:\n"
-    "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by name, background\n"
-    "  R(x, y)  P(x, y)  D(x, y)    revolute, prismatic, disconnected\n"
-    "  x & y                        and\n"
-    "  A(x, 45)                     an action: push link x from 45 degrees\n"
-    "\n"
-    "Exit status: 0 fine, 1 no match or an error in a term, 2 wrong usage.\n";
+static const struct grrl_program program = {
+    .name = "grrl-term",
+    .usage = "grrl-term parse TERM\n"
+             "       grrl-term graph [--dot] TERM\n"
+             "       grrl-term canonical [--ignore-properties] TERM\n"
+             "       grrl-term match [--all] A B",
+    .intro =
+        "\n"
+        "parse      the term in its normal form\n"
+        "graph      its links with their properties, and its joints, first discovered first\n"
+        "canonical  one term and hash for all terms of the same structure\n"
+        "match      whether A and B are the same structure, or one contains the other: with all\n"
+        "           properties, then with properties dropped from the last place to the first;\n"
+        "           the links of A with those of B in the first mapping\n",
+    .outro = "TERM is a term or - for standard input:\n"
+             "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by number, "
+             "background\n"
+             "  blade1  L(s, blade1)         links by any other name; the last word in L(..) is "
+             "the name\n"
+             "  R(x, y)  P(x, y)  D(x, y)    revolute, prismatic, disconnected\n"
+             "  x & y                        and\n"
+             "  A(x, 45)                     an action: push link x from 45 degrees\n\n"
+             "Exit status: 0 fine, 1 no match or an error in a term, 2 wrong usage.\n",
+    .most_arguments = 3,
+    .arguments = "one term too many",
+};
 
 static struct grrl_term_node nodes[MAX_NODES];
 static struct grrl_term_store store;
@@ -55,8 +54,7 @@ struct options {
     bool dot;
     bool ignore_properties;
     bool all;
-    const char *terms[2];
-    int n_terms;
+    char **terms;
 };
 
 /* A term of the command line as a structure. */
@@ -157,11 +155,8 @@ static int write_term(grrl_term term)
 
 static void write_name(struct grrl_name name)
 {
-    static const char letters[] = {'?', 'l', 'f', 'v'};
-    if (name.kind == GRRL_NAME_BACKGROUND)
-        fputs("lb", stdout);
-    else
-        printf("%c%u", letters[name.kind], (unsigned)name.number);
+    char text[GRRL_NAME_BYTES];
+    fputs(grrl_term_name_text(&store, name, text), stdout);
 }
 
 /* Each property with a space before it, up to the last that is there. */
@@ -188,12 +183,20 @@ static int run_parse(const struct options *options)
     return read_term(options->terms[0], &term) ? write_term(term) : EXIT_NO;
 }
 
+/* In quotes, as a link may be called node or graph. */
+static void write_dot_name(struct grrl_name name)
+{
+    putchar('"');
+    write_name(name);
+    putchar('"');
+}
+
 static void write_dot(const struct structure *s)
 {
     puts("graph structure {");
     for (uint8_t i = 0; i < s->graph.n; i++) {
         fputs("  ", stdout);
-        write_name(s->names[i]);
+        write_dot_name(s->names[i]);
         fputs(" [label=\"", stdout);
         write_name(s->names[i]);
         write_properties(s->graph.label[i]);
@@ -201,9 +204,9 @@ static void write_dot(const struct structure *s)
     }
     for (uint8_t i = 0; i < s->n_edges; i++) {
         fputs("  ", stdout);
-        write_name(s->names[s->edges[i].a]);
+        write_dot_name(s->names[s->edges[i].a]);
         fputs(" -- ", stdout);
-        write_name(s->names[s->edges[i].b]);
+        write_dot_name(s->names[s->edges[i].b]);
         printf(" [label=\"%c\"];\n", joint_letter(&s->edges[i]));
     }
     puts("}");
@@ -355,44 +358,62 @@ static int run_match(const struct options *options)
 struct command {
     const char *name;
     int n_terms;
-    const char *option; /* the one it takes, or NULL */
     int (*run)(const struct options *options);
 };
 
 static const struct command commands[] = {
-    {"parse", 1, NULL, run_parse},
-    {"graph", 1, "--dot", run_graph},
-    {"canonical", 1, "--ignore-properties", run_canonical},
-    {"match", 2, "--all", run_match},
+    {"parse", 1, run_parse},
+    {"graph", 1, run_graph},
+    {"canonical", 1, run_canonical},
+    {"match", 2, run_match},
 };
 
-static int refuse(const char *what, const char *argument)
+static const struct command *find_command(const char *name)
 {
-    fprintf(stderr, "grrl-term: %s%s\n%s", what, argument, usage);
-    return EXIT_USAGE;
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
+        if (strcmp(name, commands[i].name) == 0)
+            return &commands[i];
+    return NULL;
 }
 
-static int run_command(const struct command *command, int n_arguments, char **arguments)
+/* What is wrong about the command, its options and its terms, or NULL. */
+static const char *wrong_usage(const struct command *command, const struct options *options,
+                               int n_terms)
 {
-    struct options options = {.n_terms = 0};
-    int n_from_input = 0;
-    for (int i = 0; i < n_arguments; i++) {
-        const char *argument = arguments[i];
-        if (argument[0] == '-' && argument[1] != '\0') {
-            if (command->option == NULL || strcmp(argument, command->option) != 0)
-                return refuse("unknown option ", argument);
-            options.dot = options.ignore_properties = options.all = true; /* it knows just one */
-            continue;
-        }
-        if (options.n_terms == command->n_terms)
-            return refuse("one term too many: ", argument);
-        n_from_input += strcmp(argument, "-") == 0;
-        options.terms[options.n_terms++] = argument;
-    }
-    if (options.n_terms < command->n_terms)
-        return refuse("too few terms for ", command->name);
-    if (n_from_input > 1)
-        return refuse("only one term can come from standard input", "");
+    if (command == NULL)
+        return "the command is parse, graph, canonical or match";
+    if (options->dot && command->run != run_graph)
+        return "--dot goes with graph";
+    if (options->ignore_properties && command->run != run_canonical)
+        return "--ignore-properties goes with canonical";
+    if (options->all && command->run != run_match)
+        return "--all goes with match";
+    if (n_terms != command->n_terms)
+        return n_terms < command->n_terms ? "too few terms" : "one term too many";
+    if (n_terms == 2 && strcmp(options->terms[0], "-") == 0 && strcmp(options->terms[1], "-") == 0)
+        return "only one term can come from standard input";
+    return NULL;
+}
+
+int main(int argc, char **argv)
+{
+    struct options options = {0};
+    const struct grrl_option rows[] = {
+        grrl_option_flag("dot", "graph: for graphviz", &options.dot),
+        grrl_option_flag("ignore-properties", "canonical: of the same kinematic structure",
+                         &options.ignore_properties),
+        grrl_option_flag("all", "match: every mapping of links", &options.all),
+    };
+    int first;
+    enum grrl_options_result parsed =
+        grrl_options_parse(&program, rows, sizeof rows / sizeof rows[0], argc, argv, &first);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
+    const struct command *command = first < argc ? find_command(argv[first]) : NULL;
+    options.terms = argv + first + 1;
+    const char *wrong = wrong_usage(command, &options, argc - first - 1);
+    if (wrong != NULL)
+        return grrl_options_wrong(&program, wrong);
     grrl_term_store_init(&store, nodes, MAX_NODES);
     int result = command->run(&options);
     if (fflush(stdout) != 0 || ferror(stdout)) {
@@ -400,22 +421,4 @@ static int run_command(const struct command *command, int n_arguments, char **ar
         return EXIT_NO;
     }
     return result;
-}
-
-int main(int argc, char **argv)
-{
-    if (argc < 2)
-        return refuse("a command is missing", "");
-    if (strcmp(argv[1], "--help") == 0) {
-        printf("%s%s", usage, help);
-        return EXIT_FINE;
-    }
-    if (strcmp(argv[1], "--version") == 0) {
-        puts("grrl-term " GRRL_VERSION);
-        return EXIT_FINE;
-    }
-    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++)
-        if (strcmp(argv[1], commands[i].name) == 0)
-            return run_command(&commands[i], argc - 2, argv + 2);
-    return refuse("unknown command ", argv[1]);
 }

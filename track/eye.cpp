@@ -1,3 +1,4 @@
+/* Follows features from picture to picture, finds lost ones again and gives up bad ones. */
 #include "eye.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+/* Measures of light, blur and rate, and the warnings they lead to. */
 #include "health.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+/* Takes pictures, tool and trial from messages, and sends points. */
 #include "lcm_eye.hpp"
 
 #include <stdexcept>

@@ -19,10 +19,7 @@
 
 #include "eye.hpp"
 #include "table.hpp"
-
-extern "C" {
 #include "wire.h"
-}
 
 namespace grrl_track
 {

@@ -313,14 +313,9 @@ bool run(const Options &options)
 int main(int argc, char **argv)
 {
     Options options;
-    switch (parse_options(argc, argv, options)) {
-    case OptionsResult::DONE:
-        return 0;
-    case OptionsResult::BAD:
-        return 2;
-    case OptionsResult::RUN:
-        break;
-    }
+    grrl_options_result parsed = parse_options(argc, argv, options);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     (void)std::signal(
         SIGINT, [](int) { stop = 1; });
     (void)std::signal(SIGTERM, [](int) { stop = 1; });

@@ -2,10 +2,10 @@
 #ifndef GRRL_TRACK_OPTIONS_HPP
 #define GRRL_TRACK_OPTIONS_HPP
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "cli/options.h"
 #include "table.hpp"
 
 namespace grrl_track
@@ -27,14 +27,11 @@ struct Options {
     std::string empty;
     std::string csv;
     std::string draw;
-    int64_t frames = 0; /* 0: all */
+    int frames = 0; /* 0: all */
     bool quiet = false;
 };
 
-enum class OptionsResult { RUN, DONE, BAD };
-
-/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
-OptionsResult parse_options(int argc, char **argv, Options &options);
+grrl_options_result parse_options(int argc, char **argv, Options &options);
 
 } // namespace grrl_track
 

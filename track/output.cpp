@@ -1,3 +1,4 @@
+/* Writes tracks as rows of CSV, and draws them into pictures. */
 #include "output.hpp"
 
 #include <cerrno>

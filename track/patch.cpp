@@ -1,3 +1,4 @@
+/* Registers a patch by Gauss-Newton steps, and judges which of its pixels belong to it. */
 #include "patch.hpp"
 
 #include <algorithm>

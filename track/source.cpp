@@ -1,3 +1,4 @@
+/* Reads cameras, videos, folders and single pictures through OpenCV. */
 #include "source.hpp"
 
 #include <algorithm>

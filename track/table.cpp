@@ -1,3 +1,4 @@
+/* Fits homography and lens distortion, finds checkerboards, keeps calibrations in files. */
 #include "table.hpp"
 
 #include <cerrno>
@@ -227,12 +228,13 @@ std::string parse_points(const std::string &text, std::vector<PointPair> &pairs)
                         &pair.m.y, &end) != 4 ||
             static_cast<size_t>(end) != item.size() || !std::isfinite(pair.px.x) ||
             !std::isfinite(pair.px.y) || !std::isfinite(pair.m.x) || !std::isfinite(pair.m.y))
-            return item + ": must be PX,PY=X,Y: a pixel and its place in metres, as in "
-                          "12,30=-0.4,0.3";
+            return "PX,PY=X,Y for each point, a pixel and its place in metres, as in "
+                   "12,30=-0.4,0.3; not " +
+                   item;
         pairs.push_back(pair);
     }
     if (pairs.size() < 4)
-        return "four points are needed, there are " + std::to_string(pairs.size()) +
+        return "four points or more, not " + std::to_string(pairs.size()) +
                "; as in \"12,30=-0.4,0.3 628,30=0.4,0.3 12,450=-0.4,-0.3 628,450=0.4,-0.3\"";
     return {};
 }
@@ -244,8 +246,8 @@ std::string parse_board(const std::string &text, Board &board)
     if (std::sscanf(text.c_str(), "%dx%dx%lf%n", &board.columns, &board.rows, &mm, &end) != 3 ||
         static_cast<size_t>(end) != text.size() || board.columns < 3 || board.rows < 3 ||
         board.columns > 50 || board.rows > 50 || !(mm >= 1.0 && mm <= 1000.0))
-        return text + ": must be COLUMNSxROWSxMM: inner corners, 3 to 50, and the side of a "
-                      "square, as in 9x6x25";
+        return "COLUMNSxROWSxMM: inner corners, 3 to 50, and the side of a "
+               "square, as in 9x6x25";
     board.square_m = 0.001 * mm;
     return {};
 }

@@ -65,7 +65,7 @@ private:
     cv::Matx33d to_picture_ = cv::Matx33d::eye();
 };
 
-/* "PX,PY=X,Y ..", or "COLUMNSxROWSxMM"; what is wrong, or an empty text. */
+/* "PX,PY=X,Y ..", or "COLUMNSxROWSxMM"; returns an empty text, or what it must be. */
 std::string parse_points(const std::string &text, std::vector<PointPair> &pairs);
 std::string parse_board(const std::string &text, Board &board);
 

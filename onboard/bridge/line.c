@@ -1,3 +1,4 @@
+/* Sends a request, and sends it again until the answer arrives. */
 #define _DEFAULT_SOURCE /* cfmakeraw */
 
 #include "line.h"

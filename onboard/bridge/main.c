@@ -1,6 +1,4 @@
 /* grrl-bridge: the agent's core on LCM with its learner on a controller behind a serial line. */
-#include <errno.h>
-#include <getopt.h>
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
@@ -8,6 +6,7 @@
 #include <string.h>
 
 #include "agent.h"
+#include "cli/options.h"
 #include "process.h"
 #include "remote_learner.h"
 
@@ -20,121 +19,55 @@ static struct bridge_line line;
 struct run {
     const char *serial;
     const char *lcm_url;
-    enum grrl_policy_kind policy;
+    struct grrl_policy_type policy; /* its name alone */
     uint64_t seed;
     bool quiet;
     int32_t trials; /* that count */
     int64_t pushes; /* in them */
 };
 
-static const char help[] =
-    "Usage: grrl-bridge --serial PATH [OPTION]...\n"
-    "Puts a controller that runs grrl-image on LCM: takes the place of grrl-agent, and asks the\n"
-    "controller for everything that is believed, chosen and learned.\n\n"
-    "  --serial PATH   Unix socket (qemu-system-arm -chardev socket,path=PATH,server=on) or "
-    "serial\n"
-    "                  device with the controller behind it; needed\n"
-    "  --policy NAME   how the controller chooses: learn, paper or random (learn)\n"
-    "  --seed N        seed of all random choices (1)\n"
-    "  --lcm-url URL   LCM provider\n"
-    "  --quiet         print errors only\n"
-    "  --help          print this text\n"
-    "  --version       print the version\n\n"
-    "Without --lcm-url the environment variable LCM_DEFAULT_URL counts. Damaged bytes on the line\n"
-    "cost time and change nothing; they are counted and shown at the end.\n"
-    "Exit status: 0 all trials done or stopped by a signal; 1 trouble; 2 wrong command line.\n";
+static const struct grrl_program program = {
+    .name = "grrl-bridge",
+    .usage = "grrl-bridge --serial PATH [OPTION]...",
+    .intro =
+        "Puts a controller that runs grrl-image on LCM: takes the place of grrl-agent, and asks "
+        "the\ncontroller for everything that is believed, chosen and learned.\n",
+    .outro =
+        "Without --lcm-url the environment variable LCM_DEFAULT_URL counts. Damaged bytes on the "
+        "line\ncost time and change nothing; they are counted and shown at the end.\n"
+        "Exit status: 0 all trials done or stopped by a signal; 1 trouble; 2 wrong command line.\n",
+};
 
-enum { OPT_SERIAL = 256, OPT_POLICY, OPT_SEED, OPT_LCM_URL, OPT_QUIET, OPT_HELP, OPT_VERSION };
-
-static const struct option options[] = {{"serial", required_argument, NULL, OPT_SERIAL},
-                                        {"policy", required_argument, NULL, OPT_POLICY},
-                                        {"seed", required_argument, NULL, OPT_SEED},
-                                        {"lcm-url", required_argument, NULL, OPT_LCM_URL},
-                                        {"quiet", no_argument, NULL, OPT_QUIET},
-                                        {"help", no_argument, NULL, OPT_HELP},
-                                        {"version", no_argument, NULL, OPT_VERSION},
-                                        {NULL, 0, NULL, 0}};
-
-enum { GO_ON = -1, WRONG_USAGE = 2 };
-
-static int wrong(const char *option, const char *text, const char *right)
+/* Which policies there are, the controller knows. */
+static const char *take_policy(void *context, const char *text)
 {
-    (void)fprintf(stderr, "grrl-bridge: --%s %s: must be %s\n", option, text, right);
-    return WRONG_USAGE;
+    ((struct grrl_policy_type *)context)->name = text;
+    bool fits = text[0] != '\0' && strlen(text) < GRRL_POLICY_NAME_BYTES;
+    return fits ? NULL : "a name of 1 to 15 characters";
 }
 
-static int take_policy(struct run *run, const char *text)
+static enum grrl_options_result parse(int argc, char **argv, struct run *run)
 {
-    static const char *const names[] = {[GRRL_POLICY_LEARN] = "learn",
-                                        [GRRL_POLICY_PAPER] = "paper",
-                                        [GRRL_POLICY_RANDOM] = "random"};
-    for (unsigned i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (strcmp(text, names[i]) == 0) {
-            run->policy = (enum grrl_policy_kind)i;
-            return GO_ON;
-        }
-    }
-    return wrong("policy", text, "learn, paper or random");
-}
-
-static int take_seed(struct run *run, const char *text)
-{
-    char *end;
-    errno = 0;
-    run->seed = strtoull(text, &end, 10);
-    bool digits = text[0] >= '0' && text[0] <= '9';
-    return digits && *end == '\0' && errno == 0 ? GO_ON : wrong("seed", text, "a number from 0");
-}
-
-static int take(struct run *run, int id)
-{
-    switch (id) {
-    case OPT_SERIAL:
-        run->serial = optarg;
-        return GO_ON;
-    case OPT_POLICY:
-        return take_policy(run, optarg);
-    case OPT_SEED:
-        return take_seed(run, optarg);
-    case OPT_LCM_URL:
-        run->lcm_url = optarg;
-        return GO_ON;
-    case OPT_QUIET:
-        run->quiet = true;
-        return GO_ON;
-    case OPT_HELP:
-        (void)fputs(help, stdout);
-        return EXIT_SUCCESS;
-    case OPT_VERSION:
-        (void)printf("grrl-bridge %s\n", GRRL_VERSION);
-        return EXIT_SUCCESS;
-    default:
-        (void)fprintf(stderr, "Try grrl-bridge --help\n");
-        return WRONG_USAGE;
-    }
-}
-
-/* GO_ON, or the exit status. */
-static int parse(int argc, char **argv, struct run *run)
-{
-    *run = (struct run){.policy = GRRL_POLICY_LEARN, .seed = 1};
-    int id;
-    while ((id = getopt_long(argc, argv, "", options, NULL)) != -1) {
-        int status = take(run, id);
-        if (status != GO_ON)
-            return status;
-    }
-    if (optind < argc) {
-        (void)fprintf(stderr, "grrl-bridge: %s: there are no arguments, only options\n",
-                      argv[optind]);
-        return WRONG_USAGE;
-    }
-    if (run->serial == NULL) {
-        (void)fprintf(stderr,
-                      "grrl-bridge: --serial is needed, the controller's socket or device\n");
-        return WRONG_USAGE;
-    }
-    return GO_ON;
+    *run = (struct run){.policy = {.name = "learn"}, .seed = 1};
+    const struct grrl_option rows[] = {
+        grrl_option_text(
+            "serial", "PATH",
+            "Unix socket (qemu-system-arm -chardev socket,path=PATH,server=on) or serial\n"
+            "device with the controller behind it; needed",
+            &run->serial),
+        grrl_option_call("policy", "NAME",
+                         "how the controller chooses, a policy of its image (learn)", take_policy,
+                         &run->policy),
+        grrl_option_u64("seed", "N", "seed of all random choices (1)", 0, UINT64_MAX, &run->seed),
+        grrl_option_text("lcm-url", "URL", "LCM provider", &run->lcm_url),
+        grrl_option_flag("quiet", "print errors only", &run->quiet),
+    };
+    enum grrl_options_result result =
+        grrl_options_parse(&program, rows, sizeof rows / sizeof rows[0], argc, argv, NULL);
+    if (result == GRRL_OPTIONS_RUN && run->serial == NULL)
+        return grrl_options_wrong(&program,
+                                  "--serial is needed, the controller's socket or device");
+    return result;
 }
 
 static void on_event(void *context, const struct grrl_agent_event *event)
@@ -150,10 +83,9 @@ static void on_event(void *context, const struct grrl_agent_event *event)
         run->pushes += event->pushes;
     }
     if (!run->quiet)
-        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u %s\n", event->trial_id,
+        (void)printf("trial %" PRId32 ": %" PRId32 " pushes, %s, %u entries\n", event->trial_id,
                      event->pushes, outcomes[event->outcome],
-                     (unsigned)grrl_learner_usage_of(&agent.learner).n,
-                     run->policy == GRRL_POLICY_LEARN ? "cases" : "experiences");
+                     (unsigned)grrl_learner_usage(&agent.learner).n);
     (void)fflush(stdout);
 }
 
@@ -183,9 +115,9 @@ static void report(const struct run *run, const struct bridge_result *result)
                  " requests sent again, %" PRIu32 " answers too many\n",
                  counts->requests, counts->bytes_out, counts->bytes_in, counts->damaged_out,
                  counts->damaged_in, counts->resent, counts->late);
-    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
-                 "\nexperiences %016" PRIx64 "\n",
-                 result->models, result->decisions, result->updates, result->experiences);
+    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nupdates %016" PRIx64
+                 "\nstore %016" PRIx64 "\n",
+                 result->models, result->decisions, result->updates, result->store);
 }
 
 static bool run_bridge(struct run *run, lcm_t *lcm)
@@ -197,7 +129,7 @@ static bool run_bridge(struct run *run, lcm_t *lcm)
         .context = run,
     };
     config.learner.seed = run->seed;
-    config.learner.policy.kind = run->policy;
+    config.policy.type = &run->policy;
     if (!bridge_line_open(&line, run->serial, SOCKET_MS))
         return false;
     bridge_learner_use(&line);
@@ -219,9 +151,9 @@ static bool run_bridge(struct run *run, lcm_t *lcm)
 int main(int argc, char **argv)
 {
     struct run run;
-    int usage = parse(argc, argv, &run);
-    if (usage != GO_ON)
-        return usage;
+    enum grrl_options_result parsed = parse(argc, argv, &run);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
     grrl_process_catch_signals();
     (void)signal(SIGPIPE, SIG_IGN); /* a controller that is gone is an error of write */
     lcm_t *lcm = grrl_process_open_lcm("grrl-bridge", run.lcm_url);

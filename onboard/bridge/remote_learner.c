@@ -1,3 +1,4 @@
+/* Implements grrl_learner_* by requests to the controller. */
 #include "remote_learner.h"
 
 #include <stdio.h>
@@ -5,7 +6,7 @@
 
 /* The functions of grrl/learner.h have no room for it, and a process has one controller. */
 static struct bridge_line *line;
-static struct grrl_learner_usage usage;
+static struct grrl_usage usage;
 
 void bridge_learner_use(struct bridge_line *to)
 {
@@ -30,6 +31,8 @@ static enum grrl_status ask(enum onboard_packet_type wanted)
     if (answer->type == ONBOARD_REFUSED && status == GRRL_ERR_VERSION)
         fail("the controller was built with other capacities than this bridge; build both with the "
              "same GRRL_MAX_.. and ONBOARD_..");
+    else if (answer->type == ONBOARD_REFUSED && status == GRRL_ERR_NONE)
+        fail("the controller's image does not have this policy; build it with ONBOARD_POLICIES");
     else if (answer->type == ONBOARD_REFUSED && status == GRRL_ERR_ORDER)
         fail("the controller was restarted and has lost what it learned; start the run again");
     else
@@ -57,13 +60,13 @@ static enum grrl_status unless(bool fine, enum grrl_status status)
 
 enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    const struct grrl_learner_config *config,
-                                   const struct grrl_learner_memory *memory)
+                                   struct grrl_policy policy)
 {
-    (void)memory; /* the controller has its own */
     memset(learner, 0, sizeof *learner);
     learner->config = *config;
-    usage = (struct grrl_learner_usage){.capacity = ONBOARD_EXPERIENCES};
-    onboard_put_open(&line->request, config->seed, config->policy.kind);
+    learner->policy = policy; /* its type alone: the memory is the controller's */
+    usage = (struct grrl_usage){.capacity = ONBOARD_ENTRIES};
+    onboard_put_open(&line->request, config->seed, policy.type->name);
     return ask(ONBOARD_DONE);
 }
 
@@ -123,23 +126,19 @@ void grrl_learner_abandon_trial(struct grrl_learner *learner)
     (void)learner;
 }
 
-struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learner)
+struct grrl_usage grrl_learner_usage(const struct grrl_learner *learner)
 {
     (void)learner;
     return usage;
 }
 
-/* The core observes other agents with these; the bridge does not. */
+/* The core observes other agents with this; the bridge does not. */
 enum grrl_status grrl_learner_adopt(struct grrl_learner *learner, uint16_t body_number,
-                                    uint8_t direction, struct grrl_decision *decision)
+                                    uint8_t direction, bool exploited,
+                                    struct grrl_decision *decision)
 {
-    (void)learner, (void)body_number, (void)direction, (void)decision;
+    (void)learner, (void)body_number, (void)direction, (void)exploited, (void)decision;
     return GRRL_ERR_ORDER;
-}
-
-void grrl_experience_touch(struct grrl_experience_store *store, uint32_t index)
-{
-    (void)store, (void)index;
 }
 
 bool bridge_learner_close(struct bridge_result *result)
@@ -149,7 +148,7 @@ bool bridge_learner_close(struct bridge_result *result)
     result->models = onboard_get(&line->answer, 8);
     result->decisions = onboard_get(&line->answer, 8);
     result->updates = onboard_get(&line->answer, 8);
-    result->experiences = onboard_get(&line->answer, 8);
+    result->store = onboard_get(&line->answer, 8);
     if (!onboard_packet_used_up(&line->answer))
         fail("the controller's last answer has another length than expected");
     return !line->failed;

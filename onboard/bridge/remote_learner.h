@@ -18,7 +18,7 @@ struct bridge_result {
     uint64_t models;
     uint64_t decisions;
     uint64_t updates;
-    uint64_t experiences;
+    uint64_t store;
 };
 
 /* Closes the run. False: line->why. */

@@ -14,12 +14,16 @@ $1 == "worst" { worst[$2] = $3 }
 $1 == "used" { used[policy, $2] = $3 }
 $1 ~ /^\.(vectors|text|ARM\.exidx|data)$/ { flash += $2 }
 $1 ~ /^\.(stack|data|bss)$/ { ram += $2 }
+$1 == "alone" && $2 ~ /^\.(vectors|text|ARM\.exidx|data)$/ { flash_alone += $3 }
+$1 == "alone" && $2 ~ /^\.(stack|data|bss)$/ { ram_alone += $3 }
 END {
     row("flash, bytes", flash, flash, 131072)
     row("RAM, bytes", ram, ram, target == "cortex-m4" ? 262144 : 327680)
     for (i = 1; i <= parts; i++)
         row("  of it " order[i], part[order[i]], part[order[i]], "")
     row("  of it all else", ram - sum, ram - sum, "")
+    row("flash with that policy alone", flash_alone, "", target == "cortex-m4" ? 61440 : "")
+    row("RAM with that policy alone", ram_alone, "", "")
     row("stack painted over, bytes", painted["learn"], painted["paper"], static)
     row("stack at most, by the call graph", static, static, part["stack"])
     split("frame perceive choose learn", steps, " ")
@@ -31,11 +35,11 @@ END {
     }
     # Choose and learn together: full stores and states of all links, which a run does not come to.
     row("a decision at full capacity, most", worst["learn"], worst["paper"], 10000000)
-    row("experiences in use at the end", used["learn", "experiences"], used["paper", "experiences"],
+    row("entries in use at the end", used["learn", "entries"], used["paper", "entries"],
         256)
     if (over != "")
         print "over the limit:" over > "/dev/stderr"
     missing = n["learn", "choose"] == 0 || n["paper", "choose"] == 0 || worst["learn"] == 0 ||
-              worst["paper"] == 0 || static == ""
+              worst["paper"] == 0 || static == "" || flash_alone == 0
     exit over != "" || missing
 }

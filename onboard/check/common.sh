@@ -63,7 +63,7 @@ emulate() {
 }
 
 hashes() {
-    grep -E '^(models|decisions|lessons|experiences) [0-9a-f]{16}$' "$1"
+    grep -E '^(models|decisions|updates|store) [0-9a-f]{16}$' "$1"
 }
 
 # same EXPECTED OUTPUT: all four hashes are there, and equal

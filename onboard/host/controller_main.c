@@ -2,7 +2,6 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include <errno.h>
-#include <getopt.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +10,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "cli/options.h"
 #include "grrl/base/random.h"
 #include "server.h"
 
@@ -23,18 +23,13 @@ struct noise {
     struct grrl_random random;
 };
 
-static const char help[] =
-    "Usage: grrl-controller --socket PATH [--damage N] [--seed N]\n"
-    "The controller of grrl-image, without emulator: waits at a new Unix socket for grrl-bridge "
-    "and\n"
-    "serves it until the line is closed.\n\n"
-    "  --socket PATH  where to listen; needed\n"
-    "  --damage N     damages one byte in N, in both directions, to test the line: changes it,\n"
-    "                 leaves it out, or puts another before it\n"
-    "  --seed N       seed of the damage (1)\n"
-    "  --help         print this text\n"
-    "  --version      print the version\n\n"
-    "Exit status: 0 the line was closed; 1 trouble; 2 wrong command line.\n";
+static const struct grrl_program program = {
+    .name = "grrl-controller",
+    .usage = "grrl-controller --socket PATH [--damage N] [--seed N]",
+    .intro = "The controller of grrl-image, without emulator: waits at a new Unix socket for "
+             "grrl-bridge and\nserves it until the line is closed.\n",
+    .outro = "Exit status: 0 the line was closed; 1 trouble; 2 wrong command line.\n",
+};
 
 static int fail(const char *path)
 {
@@ -115,42 +110,25 @@ static int serve(int fd, struct noise *noise)
     }
 }
 
-static bool take_number(const char *name, const char *text, uint64_t most, uint64_t *value)
-{
-    char *end;
-    errno = 0;
-    *value = strtoull(text, &end, 10);
-    if (text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0 && *value <= most)
-        return true;
-    (void)fprintf(stderr, "grrl-controller: --%s %s: must be a number from 0\n", name, text);
-    return false;
-}
-
 int main(int argc, char **argv)
 {
-    static const struct option options[] = {
-        {"socket", required_argument, NULL, 's'}, {"damage", required_argument, NULL, 'd'},
-        {"seed", required_argument, NULL, 'r'},   {"help", no_argument, NULL, 'h'},
-        {"version", no_argument, NULL, 'v'},      {NULL, 0, NULL, 0}};
     const char *path = NULL;
-    uint64_t every = 0, seed = 1;
-    int id;
-    while ((id = getopt_long(argc, argv, "", options, NULL)) != -1)
-        if (id == 's')
-            path = optarg;
-        else if (id == 'h' || id == 'v')
-            return printf("%s", id == 'h' ? help : "grrl-controller " GRRL_VERSION "\n") < 0;
-        else if (id == '?')
-            return fputs("Try grrl-controller --help\n", stderr) < 0 ? 1 : 2;
-        else if ((id == 'd' && !take_number("damage", optarg, UINT32_MAX, &every)) ||
-                 (id == 'r' && !take_number("seed", optarg, UINT64_MAX, &seed)))
-            return 2;
-    if (path == NULL || optind < argc) {
-        (void)fprintf(stderr, "grrl-controller: %s\nTry grrl-controller --help\n",
-                      path == NULL ? "--socket is needed" : "there are no arguments");
-        return 2;
-    }
-    struct noise noise = {.every = (uint32_t)every};
+    struct noise noise = {0};
+    uint64_t seed = 1;
+    const struct grrl_option rows[] = {
+        grrl_option_text("socket", "PATH", "where to listen; needed", &path),
+        grrl_option_u32("damage", "N",
+                        "damages one byte in N, in both directions, to test the line: changes it,\n"
+                        "leaves it out, or puts another before it",
+                        0, UINT32_MAX, &noise.every),
+        grrl_option_u64("seed", "N", "seed of the damage (1)", 0, UINT64_MAX, &seed),
+    };
+    enum grrl_options_result parsed =
+        grrl_options_parse(&program, rows, sizeof rows / sizeof rows[0], argc, argv, NULL);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
+    if (path == NULL)
+        return grrl_options_wrong(&program, "--socket is needed");
     grrl_random_init(&noise.random, seed, 0);
     (void)signal(SIGPIPE, SIG_IGN);
     int fd = accept_at(path);

@@ -4,18 +4,21 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/options.h"
 #include "replay.h"
 
 static struct onboard_controller controller;
 static struct onboard_packet packet;
 
-static const char help[] =
-    "Usage: grrl-replay RECORDING\n"
-    "Gives a recording of grrl-record to the controller and prints the hashes of what\n"
-    "it believed, decided and learned.\n\n"
-    "  --help     print this text\n"
-    "  --version  print the version\n\n"
-    "Exit status: 0 fine; 1 the recording is bad; 2 wrong command line.\n";
+static const struct grrl_program program = {
+    .name = "grrl-replay",
+    .usage = "grrl-replay RECORDING",
+    .intro = "Gives a recording of grrl-record to the controller and prints the hashes of what\n"
+             "it believed, decided and learned.\n",
+    .outro = "Exit status: 0 fine; 1 the recording is bad; 2 wrong command line.\n",
+    .most_arguments = 1,
+    .arguments = "one recording only",
+};
 
 static int read_file(void *context, void *bytes, size_t size)
 {
@@ -24,18 +27,16 @@ static int read_file(void *context, void *bytes, size_t size)
 
 int main(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[1], "--help") == 0)
-        return fputs(help, stdout) < 0;
-    if (argc == 2 && strcmp(argv[1], "--version") == 0)
-        return puts("grrl-replay " GRRL_VERSION) < 0;
-    if (argc != 2 || argv[1][0] == '-') {
-        (void)fprintf(stderr, "grrl-replay: expected the name of one recording\n"
-                              "Try grrl-replay --help\n");
-        return 2;
-    }
-    FILE *file = fopen(argv[1], "rb");
+    int first;
+    enum grrl_options_result parsed = grrl_options_parse(&program, NULL, 0, argc, argv, &first);
+    if (parsed != GRRL_OPTIONS_RUN)
+        return parsed;
+    if (first == argc)
+        return grrl_options_wrong(&program, "name a recording");
+    const char *path = argv[first];
+    FILE *file = fopen(path, "rb");
     if (file == NULL) {
-        (void)fprintf(stderr, "grrl-replay: %s: %s\n", argv[1], strerror(errno));
+        (void)fprintf(stderr, "grrl-replay: %s: %s\n", path, strerror(errno));
         return 1;
     }
     struct onboard_source source = {file, read_file};
@@ -49,8 +50,8 @@ int main(int argc, char **argv)
                       " of the run): %s\n",
                       progress.packets, progress.trials, progress.pushes, grrl_status_text(status));
     }
-    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nlessons %016" PRIx64
-                 "\nexperiences %016" PRIx64 "\n",
+    (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nupdates %016" PRIx64
+                 "\nstore %016" PRIx64 "\n",
                  controller.hashes.models, controller.hashes.decisions, controller.hashes.updates,
                  controller.store_hash);
     return status == GRRL_OK ? 0 : 1;

@@ -89,17 +89,17 @@ static void write_costs(void)
 static void write_memory(void)
 {
     write_line("ram learner", sizeof controller.learner);
-    write_line("ram cases", sizeof controller.cases);
-    write_line("ram states", sizeof controller.states);
-    write_line("ram experiences", sizeof controller.experiences);
+    write_line("ram policy", sizeof controller.policy);
     write_line("ram terms",
                sizeof controller.terms + sizeof controller.nodes + sizeof controller.text);
     write_line("ram packets", sizeof controller.points + sizeof controller.answer + sizeof server);
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
-    const struct grrl_learner_usage used = grrl_learner_usage_of(&controller.learner);
-    write_line("used experiences", used.n);
+    if (!controller.open)
+        return; /* there is no learner yet */
+    const struct grrl_usage used = grrl_learner_usage(&controller.learner);
+    write_line("used entries", used.n);
     write_line("used features", controller.learner.perception.counts.features_high);
     write_line("used keyframes", controller.learner.perception.counts.keyframes_high);
     write_line("evictions", used.evictions);
@@ -122,7 +122,7 @@ static int replay(const char *path)
     write_hash("models", controller.hashes.models);
     write_hash("decisions", controller.hashes.decisions);
     write_hash("updates", controller.hashes.updates);
-    write_hash("experiences", controller.store_hash);
+    write_hash("store", controller.store_hash);
     write_costs();
     write_memory();
     if (status != GRRL_OK) {
@@ -131,6 +131,17 @@ static int replay(const char *path)
         machine_write("\n");
     }
     return status == GRRL_OK ? EXIT_FINE : EXIT_DIFFERS;
+}
+
+/* Of each policy in the image. */
+static void write_worst(void)
+{
+    static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
+    for (size_t i = 0; i < sizeof offered / sizeof offered[0]; i++) {
+        machine_write("worst ");
+        write_line(offered[i]->name,
+                   machine_instructions(worst_decision(&controller, offered[i], machine_count)));
+    }
 }
 
 /* Until the machine is switched off. */
@@ -166,9 +177,7 @@ int main(void)
     if (strncmp(first, "replay ", 7) == 0)
         return replay(first + 7);
     if (strcmp(first, "worst") == 0) {
-        write_line("worst learn", machine_instructions(worst_of_cases(&controller, machine_count)));
-        write_line("worst paper",
-                   machine_instructions(worst_of_experiences(&controller, machine_count)));
+        write_worst();
         return EXIT_FINE;
     }
     machine_write("arguments: replay FILE, serve, worst, or fault NAME\n");

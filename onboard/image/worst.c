@@ -1,90 +1,80 @@
+/* worst.c: structures that make a policy work hard, and what it then costs. */
 #include "worst.h"
 
-enum { SEED = 1, ROUNDS = 100 };
+#include <string.h>
+
+enum { SEED = 1, ROUNDS = 100, MOST_FILLING = 20000 };
 
 static struct grrl_random random;
-static struct grrl_contexts contexts;
-static struct grrl_recall recall;
+static struct grrl_model model;
 static struct grrl_graph state;
 
-static void make_context(struct grrl_context *context)
-{
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        context->part[i] = (uint8_t)grrl_random_below(&random, grrl_context_most[i] + 1u);
-}
-
-uint32_t worst_of_cases(struct onboard_controller *controller, uint32_t (*count)(void))
-{
-    struct grrl_case_base *base = &controller->learner.cases;
-    struct grrl_policy_config config;
-    struct grrl_choice choice;
-    uint32_t most = 0;
-    grrl_policy_config_default(&config);
-    grrl_cases_init(base, controller->cases, ONBOARD_EXPERIENCES);
-    grrl_random_init(&random, SEED, 0);
-    while (base->evictions < 1) { /* until it is full */
-        make_context(&contexts.action[0][0]);
-        (void)grrl_cases_learn(base, &config.cases, &contexts.action[0][0], 1.0f);
-    }
-    contexts.n_links = GRRL_MAX_LINKS;
-    for (int i = 0; i < ROUNDS; i++) {
-        for (unsigned action = 0; action < GRRL_MAX_LINKS * GRRL_DIRECTIONS; action++)
-            make_context(&contexts.action[action / GRRL_DIRECTIONS][action % GRRL_DIRECTIONS]);
-        uint32_t start = count();
-        grrl_policy_choose_by_cases(&config, base, &contexts, &random, &choice);
-        (void)grrl_cases_learn(base, &config.cases, &contexts.action[choice.link][choice.direction],
-                               0.0f);
-        uint32_t spent = count() - start;
-        most = spent > most ? spent : most;
-    }
-    return most;
-}
-
-/* A tree with up to two loops, of links and joints that are all alike: nothing but its shape tells
- * one from another, which makes the longest searches. */
+/*
+ * A tree with up to two loops, of links and joints that are all alike: nothing but its shape tells
+ * one from another, which makes the longest searches. Places and lengths vary, for contexts.
+ */
 static void make_state(uint8_t links)
 {
-    grrl_graph_clear(&state);
+    memset(&model, 0, sizeof model);
+    model.n_bodies = links;
     for (uint8_t i = 0; i < links; i++) {
-        (void)!grrl_graph_add_link(&state, GRRL_PROPERTY_SMALL, NULL);
-        if (i > 0) {
-            (void)!grrl_graph_add_joint(&state, i, (uint8_t)grrl_random_below(&random, i),
-                                        GRRL_REVOLUTE);
-        }
+        struct grrl_body *body = &model.body[i];
+        body->number = (uint16_t)(i + 1);
+        body->axis = (struct grrl_vec2){1.0f, 0.0f};
+        body->length_m = 0.05f + 0.09f * grrl_random_uniform(&random);
+        body->centroid_m =
+            (struct grrl_vec2){grrl_random_uniform(&random), grrl_random_uniform(&random)};
     }
-    for (uint32_t loops = grrl_random_below(&random, 3); loops > 0; loops--) {
-        (void)!grrl_graph_add_joint(&state, (uint8_t)grrl_random_below(&random, links),
-                                    (uint8_t)grrl_random_below(&random, links), GRRL_REVOLUTE);
+    uint32_t loops = grrl_random_below(&random, 3);
+    for (uint32_t j = 1; j < links + loops && j <= GRRL_MAX_JOINTS; j++) {
+        uint8_t b = (uint8_t)(j < links ? j : 1 + grrl_random_below(&random, links - 1u));
+        uint8_t a = (uint8_t)grrl_random_below(&random, b);
+        struct grrl_joint *joint = &model.joint[model.n_joints++];
+        *joint = (struct grrl_joint){.a = a, .b = b, .type = GRRL_REVOLUTE, .probability = 1.0f};
     }
+    grrl_relational_state_of(&model, 0.15f, &state, NULL, NULL);
 }
 
-uint32_t worst_of_experiences(struct onboard_controller *controller, uint32_t (*count)(void))
+static uint8_t any_links(void)
 {
-    struct grrl_experience_store *store = &controller->learner.store;
-    struct grrl_policy_config config;
-    struct grrl_choice choice;
-    uint32_t most = 0;
-    grrl_policy_config_default(&config);
-    config.kind = GRRL_POLICY_PAPER;
-    grrl_experience_init(store, controller->states, ONBOARD_STATES, controller->experiences,
-                         ONBOARD_EXPERIENCES);
-    grrl_random_init(&random, SEED, 1);
-    while (store->evictions < 1) {
-        make_state(
-            (uint8_t)(GRRL_MAX_LINKS / 2 + grrl_random_below(&random, GRRL_MAX_LINKS / 2 + 1)));
-        (void)!grrl_experience_update(store, &state, (uint8_t)grrl_random_below(&random, state.n),
-                                      (uint8_t)grrl_random_below(&random, GRRL_DIRECTIONS), 1.0f,
-                                      config.alpha, NULL);
+    return (uint8_t)(GRRL_MAX_LINKS / 2 + grrl_random_below(&random, GRRL_MAX_LINKS / 2 + 1));
+}
+
+/* A decision in the present state; what came of it is seen in another one of as many links. */
+static uint32_t decide(const struct grrl_policy *policy, uint8_t links, uint32_t (*count)(void))
+{
+    const struct grrl_view view = {NULL, &model, &state, 0.15f};
+    struct grrl_outcome outcome = {.view = view, .reward = 1.0f};
+    struct grrl_update update = {1.0f, 1.0f, GRRL_NO_ENTRY};
+    uint32_t start = count();
+    policy->type->choose(policy->self, &view, &random, &outcome.choice);
+    uint32_t spent = count() - start;
+    outcome.body_number = model.body[outcome.choice.link].number;
+    make_state(links);
+    start = count();
+    if (policy->type->learn != NULL)
+        policy->type->learn(policy->self, &outcome, &update);
+    return spent + (count() - start);
+}
+
+uint32_t worst_decision(struct onboard_controller *controller, const struct grrl_policy_type *type,
+                        uint32_t (*count)(void))
+{
+    struct grrl_policy policy;
+    grrl_random_init(&random, SEED, 0);
+    if (grrl_policy_make(type, controller->policy.bytes, sizeof controller->policy.bytes,
+                         ONBOARD_ENTRIES, NULL, &policy) != GRRL_OK)
+        return 0;
+    make_state(any_links());
+    for (int i = 0; type->usage != NULL && type->usage(policy.self).evictions < 1; i++) {
+        if (i == MOST_FILLING)
+            return 0; /* it does not fill up: then this measures nothing */
+        (void)decide(&policy, any_links(), count);
     }
+    uint32_t most = 0;
+    make_state(GRRL_MAX_LINKS);
     for (int i = 0; i < ROUNDS; i++) {
-        make_state(GRRL_MAX_LINKS);
-        uint32_t start = count();
-        grrl_experience_recall(store, &state, &config.recall, &recall);
-        grrl_policy_choose(&config, store, &recall, &random, &choice);
-        grrl_experience_recall(store, &state, &config.recall, &recall); /* of the state after it */
-        (void)!grrl_experience_update(store, &state, choice.link, choice.direction, 1.0f,
-                                      config.alpha, NULL);
-        uint32_t spent = count() - start;
+        uint32_t spent = decide(&policy, GRRL_MAX_LINKS, count);
         most = spent > most ? spent : most;
     }
     return most;

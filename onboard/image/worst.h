@@ -1,15 +1,14 @@
-/*
- * worst.h: decisions at full capacity: every case and state in use, states of all links. A run of
- * RPRPRPR comes nowhere near.
- */
+/* worst.h: what a decision costs at full capacity. */
 #ifndef ONBOARD_WORST_H
 #define ONBOARD_WORST_H
 
 #include "controller.h"
 
-/* The most that choose and learn took together, in units of the count, over many states; grounding
- * the push aside. Uses the controller's memory. */
-uint32_t worst_of_cases(struct onboard_controller *controller, uint32_t (*count)(void));
-uint32_t worst_of_experiences(struct onboard_controller *controller, uint32_t (*count)(void));
+/*
+ * The most, in units of `count`, that a choice and what is learned from it take over 100 structures
+ * of GRRL_MAX_LINKS links, once the policy's memory is full. Uses the controller's memory.
+ */
+uint32_t worst_decision(struct onboard_controller *controller, const struct grrl_policy_type *type,
+                        uint32_t (*count)(void));
 
 #endif

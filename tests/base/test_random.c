@@ -1,3 +1,4 @@
+/* PCG32 against its reference, and the distribution of its numbers. */
 #include "grrl/base/random.h"
 #include "support.h"
 
@@ -50,6 +51,30 @@ static void test_below(void **state)
     assert_in_range(n_high, 875, 1125);
 }
 
+/* Of the 2^32 values, as many of the smallest are drawn again as would bias the remainder: for a
+ * count of three, zero alone. */
+static void test_below_draws_again(void **state)
+{
+    (void)state;
+    struct grrl_random random;
+    random.increment = 1;
+    random.state = UINT64_C(1) << 27;
+    struct grrl_random other = random;
+    assert_int_equal(grrl_random_next(&other), 1);
+    assert_int_equal(grrl_random_below(&random, 3), 1);
+    assert_true(random.state == other.state);
+
+    random.state = 0;
+    other = random;
+    uint32_t first = grrl_random_next(&other);
+    assert_int_equal(first, 0);
+    uint32_t value = first;
+    while (value == 0)
+        value = grrl_random_next(&other);
+    assert_int_equal(grrl_random_below(&random, 3), value % 3);
+    assert_true(random.state == other.state);
+}
+
 static void test_uniform(void **state)
 {
     (void)state;
@@ -69,9 +94,8 @@ static void test_uniform(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_streams_differ),
-        cmocka_unit_test(test_below),
+        cmocka_unit_test(test_reference), cmocka_unit_test(test_streams_differ),
+        cmocka_unit_test(test_below),     cmocka_unit_test(test_below_draws_again),
         cmocka_unit_test(test_uniform),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,3 +1,4 @@
+/* Every status has a text of its own. */
 #include "grrl/base/status.h"
 #include "support.h"
 
@@ -7,14 +8,14 @@ static void test_texts(void **state)
     (void)state;
     const char *unknown = grrl_status_text((enum grrl_status)1);
     assert_non_null(unknown);
-    for (int a = GRRL_ERR_ORDER; a <= GRRL_OK; a++) {
+    for (int a = GRRL_ERR_POLICY; a <= GRRL_OK; a++) {
         const char *text = grrl_status_text((enum grrl_status)a);
         assert_true(strlen(text) > 0 && text[strlen(text) - 1] != '.');
         assert_string_not_equal(text, unknown);
-        for (int b = GRRL_ERR_ORDER; b < a; b++)
+        for (int b = GRRL_ERR_POLICY; b < a; b++)
             assert_string_not_equal(text, grrl_status_text((enum grrl_status)b));
     }
-    assert_string_equal(grrl_status_text((enum grrl_status)(GRRL_ERR_ORDER - 1)), unknown);
+    assert_string_equal(grrl_status_text((enum grrl_status)(GRRL_ERR_POLICY - 1)), unknown);
 }
 
 int main(void)

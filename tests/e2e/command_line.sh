@@ -16,14 +16,19 @@ refused() {
 
 refused 2 "$AGENT" --polcy learn
 refused 2 "$AGENT" --policy lern
-refused 2 "$AGENT" --alpha 0
-refused 2 "$AGENT" --alpha 0.5x
-refused 2 "$AGENT" --alpha 2
+refused 2 "$AGENT" --alpha 0.2
+grep -q -e '--alpha goes with --policy paper' err.txt || fail "--alpha 0.2: $(cat err.txt)"
+refused 2 "$AGENT" --policy random --store random.store
+grep -q 'the policy random does not learn' err.txt || fail "random: $(cat err.txt)"
+refused 2 "$AGENT" --policy paper --alpha 0
+refused 2 "$AGENT" --policy paper --alpha 0.5x
+refused 2 "$AGENT" --policy paper --alpha 2
 grep -q -e '--alpha 2: must be a number above 0 to 1' err.txt || fail "--alpha 2: $(cat err.txt)"
-refused 2 "$AGENT" --gamma 1
-refused 2 "$AGENT" --z 1001
-refused 2 "$AGENT" --beta nan
+refused 2 "$AGENT" --policy paper --gamma 1
+refused 2 "$AGENT" --policy paper --z 1001
+refused 2 "$AGENT" --policy paper --beta nan
 refused 2 "$AGENT" --noise 0
+refused 2 "$AGENT" --noise 1e-60
 refused 2 "$AGENT" --seed -1
 refused 2 "$AGENT" --experiences 0
 refused 2 "$AGENT" --experiences 7000000
@@ -33,6 +38,8 @@ refused 2 "$AGENT" --tracker-timeout 0
 refused 2 "$AGENT" --tracker-timeout soon
 refused 2 "$AGENT" extra
 refused 2 "$SIM"
+refused 2 "$SIM" --object RR --object RRR
+grep -q -e '--object: given twice' err.txt || fail "--object twice: $(cat err.txt)"
 refused 2 "$SIM" --object RXR
 refused 2 "$SIM" --object 'R(l1, l1)'
 refused 2 "$SIM" --object RR --trials 0
@@ -88,6 +95,8 @@ set_aside empty.store
 echo "not a store at all, but a letter" >letter.store
 kept letter.store
 refused 1 "$AGENT" --lcm-url "$URL" --store good.store --experiences 1
+refused 1 "$AGENT" --lcm-url "$URL" --store good.store --policy paper # learn's
+grep -q 'another policy learned it' err.txt || fail "another policy: $(cat err.txt)"
 
 # A signal is a clean end.
 start agent "$AGENT" --lcm-url "$URL" --store good.store

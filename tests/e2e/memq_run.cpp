@@ -6,12 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
+#include "node.hpp"
+#include "policy_memory.h"
 #include "store_file.h"
-}
 
 using namespace grrl_sim;
 
@@ -34,17 +32,16 @@ int main(int argc, char **argv)
     lcm_t *lcm = lcm_create("memq://");
     if (!object || lcm == nullptr)
         return 1;
-    std::vector<grrl_case> cases(1000);
-    std::vector<grrl_experience_state> states(1000);
-    std::vector<grrl_experience> experiences(1000);
+    static POLICY_MEMORY(1000) memory;
     auto agent = std::make_unique<grrl_agent>();
     grrl_agent_config agent_config{};
     grrl_learner_config_default(&agent_config.learner);
     agent_config.learner.seed = std::strtoull(argv[3], nullptr, 10);
     agent_config.session_id = 1;
     agent_config.now_us = agent_clock;
-    agent_config.memory = {cases.data(), 1000, states.data(), 1000, experiences.data(), 1000};
-    if (grrl_agent_init(agent.get(), &agent_config, lcm) != GRRL_OK)
+    if (grrl_policy_make(&grrl_policy_learn, memory.bytes, sizeof memory.bytes, 1000, nullptr,
+                         &agent_config.policy) != GRRL_OK ||
+        grrl_agent_init(agent.get(), &agent_config, lcm) != GRRL_OK)
         return 1;
     NodeConfig config;
     config.object = *object.value;

@@ -83,7 +83,8 @@ transports)
     same memq udpm
     ;;
 killed)
-    options=(--object RPR --policy "random,learn" --trials 3 --experiments 6)
+    few=(--object RPR --policy "random,learn" --trials 3)
+    options=("${few[@]}" --experiments 6)
     run whole "${options[@]}"
     for how in KILL TERM; do
         rm -rf parts
@@ -106,7 +107,7 @@ killed)
     run parts "${options[@]}"
     grep -q '11 of 12 experiments are there already' output.txt || fail "rubbish was believed"
     same whole parts
-    run parts "${options[@]}" --experiments 2 # fewer are part of the same
+    run parts "${few[@]}" --experiments 2 # fewer are part of the same
     grep -q '4 of 4 experiments are there already' output.txt || fail "repeated"
     status=0
     "$BIN" --out parts "${options[@]}" --seed 9 >output.txt 2>&1 || status=$?
@@ -132,6 +133,7 @@ options)
     refused 'XY: ' --object XY --out x
     refused 'NO: ' --object RR --pretrain NO:2 --out x
     refused 'there are no arguments' --object RR --out x more
+    refused '--object: given twice' --object RR --object RRR --out x
     refused 'Try grrl-experiment --help' --unknown
     [ ! -e x ] || fail "a folder was made all the same"
     "$BIN" --help | grep -q 'clairvoyant  knows the truth' || fail "--help"

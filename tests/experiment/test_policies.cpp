@@ -147,21 +147,21 @@ void joints_are_known_or_wrong_by_the_truth(void **)
     join(model, 0, 1, GRRL_REVOLUTE);
     join(model, 1, 2, GRRL_REVOLUTE); /* is prismatic */
     join(model, 0, 3, GRRL_REVOLUTE); /* is none */
-    Belief belief = belief_of(model);
-    assert_true(known_joints(world, belief) == std::vector<bool>({true, false, false}));
-    assert_true(wrong_joints(world, belief) == std::vector<bool>({false, true, true}));
+    Estimate estimate = estimate_of(model);
+    assert_true(known_joints(world, estimate) == std::vector<bool>({true, false, false}));
+    assert_true(wrong_joints(world, estimate) == std::vector<bool>({false, true, true}));
 }
 
 void joints_between_clusters_of_links_count(void **)
 {
     grrl_sim::World world = world_of("RPR");
-    Belief belief = belief_of(perfect(world));
-    belief.links = 2; /* links 0 and 1, links 2 and 3 not told apart */
-    for (auto &feature : belief.features)
+    Estimate estimate = estimate_of(perfect(world));
+    estimate.links = 2; /* links 0 and 1, links 2 and 3 not told apart */
+    for (auto &feature : estimate.features)
         feature.second /= 2;
-    belief.joints = {{0, 1, GRRL_PRISMATIC}};
-    assert_true(known_joints(world, belief) == std::vector<bool>({false, true, false}));
-    assert_true(wrong_joints(world, belief) == std::vector<bool>({false}));
+    estimate.joints = {{0, 1, GRRL_PRISMATIC, 1.0}};
+    assert_true(known_joints(world, estimate) == std::vector<bool>({false, true, false}));
+    assert_true(wrong_joints(world, estimate) == std::vector<bool>({false}));
 }
 
 void the_clairvoyant_goes_for_what_is_not_known(void **)

@@ -14,7 +14,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+#ifdef __cplusplus
+}
+#endif
 
 static inline void fuzz_require(bool holds, const char *what, const char *file, int line)
 {

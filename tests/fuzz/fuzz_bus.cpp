@@ -8,12 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "node.hpp"
-
-extern "C" {
 #include "agent.h"
 #include "fuzz.h"
-}
+#include "node.hpp"
+#include "policy_memory.h"
 
 using namespace grrl_sim;
 
@@ -36,9 +34,7 @@ struct Message {
 
 int64_t clock_us;
 std::vector<Message> seen;
-grrl_case cases[capacity];
-grrl_experience_state states[capacity];
-grrl_experience experiences[capacity];
+POLICY_MEMORY(capacity) memory;
 
 int64_t agent_clock(void *)
 {
@@ -51,7 +47,8 @@ void start_agent(grrl_agent &agent, lcm_t *lcm)
     grrl_learner_config_default(&config.learner);
     config.session_id = 1;
     config.now_us = agent_clock;
-    config.memory = {cases, capacity, states, capacity, experiences, capacity};
+    REQUIRE(grrl_policy_make(&grrl_policy_learn, memory.bytes, sizeof memory.bytes, capacity,
+                             nullptr, &config.policy) == GRRL_OK);
     REQUIRE(grrl_agent_init(&agent, &config, lcm) == GRRL_OK);
 }
 

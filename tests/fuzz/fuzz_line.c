@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if ((fuzz_byte(&input) & 1) != 0) {
         static struct onboard_packet open;
         uint8_t line[ONBOARD_LINK_BYTES];
-        onboard_put_open(&open, 1, GRRL_POLICY_LEARN);
+        onboard_put_open(&open, 1, "learn");
         size_t length = onboard_link_encode(0, open.type, open.bytes, open.n, line);
         for (size_t i = 0; i < length; i++)
             give(line[i]);

@@ -24,7 +24,7 @@ static int read_bytes(void *context, void *bytes, size_t size)
 
 static void open_trial(void)
 {
-    onboard_put_open(&packet, 1, GRRL_POLICY_LEARN);
+    onboard_put_open(&packet, 1, "learn");
     REQUIRE(onboard_controller_take(&controller, &packet) == GRRL_OK);
     onboard_packet_begin(&packet, ONBOARD_TRIAL);
     onboard_put(&packet, 1, 4);

@@ -12,11 +12,13 @@
 #include <sys/stat.h>
 
 #include "controller.h"
+#include "grrl/base/settling.h"
 #include "grrl/learner/learner.h"
 #include "link.h"
+#include "policy_memory.h"
 #include "wire.h"
 
-enum { POINTS = 12, PER_LINK = 6, PATH_BYTES = 1024, REST = 10, TURNS = 12, PUSH_FRAMES = 2 };
+enum { POINTS = 12, PER_LINK = 6, PATH_BYTES = 1024, TURNS = 12, PUSH_FRAMES = 2 };
 
 static const char *folder;
 static struct grrl_wire_points points;
@@ -110,7 +112,7 @@ static void write_messages(void)
     const grrl_trial_t trial = {
         .session_id = 2, .trial_id = 1, .revision = 1, .judged_cmd_seq = -1};
     const grrl_decision_t decision = {
-        .session_id = 1, .trial_id = 1, .cmd_seq = 1, .experience = -1, .phi = 0.5f};
+        .session_id = 1, .trial_id = 1, .cmd_seq = 1, .source_index = -1, .phi = 0.5f};
     const grrl_agent_status_t agent_status = {.session_id = 1, .received = 5};
     enum { ALL = GRRL_WIRE_MAX_BYTES };
     fill_model();
@@ -192,10 +194,10 @@ static void write_log(void)
     points.message.seq = 0;
     points.message.trial_id = 1;
     log_trial(log, -1, GRRL_TRIAL_T_RUNNING);
-    log_frames(log, REST, GRRL_POINTS_T_SETTLED);
+    log_frames(log, GRRL_SETTLING_FRAMES, GRRL_POINTS_T_SETTLED);
     for (int32_t push = 1; push <= PUSH_FRAMES; push++) {
         const grrl_decision_t decision = {
-            .session_id = 1, .trial_id = 1, .cmd_seq = push, .link_number = 1, .experience = -1};
+            .session_id = 1, .trial_id = 1, .cmd_seq = push, .link_number = 1, .source_index = -1};
         log_trial(log, push - 1, GRRL_TRIAL_T_RUNNING);
         log_bytes(log, GRRL_CHANNEL_DECISION,
                   grrl_wire_encode_decision(&decision, GRRL_WIRE_MAX_BYTES, bytes, &why));
@@ -298,19 +300,17 @@ static void live_trial(uint32_t trial)
     }
 }
 
-static void write_store(const char *name, enum grrl_policy_kind kind, uint8_t flags)
+static void write_store(const char *name, const struct grrl_policy_type *type, uint8_t flags)
 {
-    static struct grrl_case cases[CAPACITY];
-    static struct grrl_experience_state states[CAPACITY];
-    static struct grrl_experience experiences[CAPACITY];
-    const struct grrl_learner_memory memory = {cases,    CAPACITY,    states,
-                                               CAPACITY, experiences, CAPACITY};
+    static POLICY_MEMORY(CAPACITY) memory;
     struct grrl_learner_config config;
+    struct grrl_policy policy;
     grrl_learner_config_default(&config);
-    config.policy.kind = kind;
     FILE *file = create("store", name);
     struct grrl_io io = {.context = file, .write = write_out};
-    bool good = grrl_learner_init(&learner, &config, &memory) == GRRL_OK;
+    bool good = grrl_policy_make(type, memory.bytes, sizeof memory.bytes, CAPACITY, NULL,
+                                 &policy) == GRRL_OK &&
+                grrl_learner_init(&learner, &config, policy) == GRRL_OK;
     for (uint32_t trial = 1; good && trial <= 3; trial++)
         live_trial(trial);
     put(file, &flags, 1);
@@ -335,12 +335,24 @@ int main(int argc, char **argv)
     write_packets();
     sequence = 1;
     write_packets();
-    write_store("cases", GRRL_POLICY_LEARN, 1);
-    write_store("paper", GRRL_POLICY_PAPER, 3);
+    write_store("cases", &grrl_policy_learn, 1);
+    write_store("paper", &grrl_policy_paper, 3);
     write_text("csv", "tracks", "frame,point,x,y,visible\n0,1,0.5,-1e-3,1\n1,1,,,0\n1,2,3,4,1\n");
     write_text("csv", "pixels", "point,frame,y_px,x_px,extra\r\n7,-3, 1.5 ,2,z\r\n");
+    write_text("csv", "sheet", "Frame;Track ID;X;Y\r\n0;1;2,5;-1\r\n1;1;3,25;4\r\n2;2;nan;NA\r\n");
+    write_text(
+        "csv", "quoted",
+        "\"\",\"t\",\"id\",\"pos_x\",\"pos_y\",\"occluded\"\n\"1\",0.0,1,2.5,1e0,\"FALSE\"\n");
+    write_text("csv", "tabs",
+               "\xef\xbb\xbf"
+               "FRAME\tparticle\tx\ty\r0\t1\t0\t0\r1\t1\t\t\r1\t2\t3\t4\r");
+    write_text("csv", "wide", "scorer,a,a\nbodyparts,b,b\ncoords,x,y\n0,1,2\n");
+    write_text("csv", "lost",
+               "frame,point,x,y\n0,1,5,5\n1,1,5.1,5\n2,1,5.2,5\n3,1,0,0\n4,1,0,0\n5,1,0,0\n"
+               "6,1,5.3,5\n0,2,7,5\n1,2,7.1,5\n2,2,7.2,5\n3,2,7.3,5\n4,2,7.4,5\n5,2,7.5,5\n");
     write_text("term", "chain", "D(lb, R(L(s, f1), P(L(l, f2), L(_, f3))))");
     write_text("term", "loop", "R(l1, R(l5, R(l4, R(l3, R(l2, l1))))) & P(v1, L(v2, l9))");
+    write_text("term", "names", "D(lb, R(L(s, blade1), P(s, L(l, R)))) & Tip & L(l)");
     write_text("term", "action", "A(f3, 45)");
     write_text("bus", "quiet", "\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3\3");
     write_text("bus", "repeats",

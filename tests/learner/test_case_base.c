@@ -1,3 +1,4 @@
+/* Estimates, doubt, eviction and the file of the cases. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -293,19 +294,19 @@ static void a_wrong_configuration_is_refused(void **state)
     assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_OK);
     f.config.mismatch = NAN;
     assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
-    assert_string_equal(field, "cases.mismatch");
+    assert_string_equal(field, "mismatch");
     grrl_case_config_default(&f.config);
     f.config.prior_weight = 0.0f;
     assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
-    assert_string_equal(field, "cases.prior_weight");
+    assert_string_equal(field, "prior_weight");
     grrl_case_config_default(&f.config);
     f.config.confidence = -0.5f;
     assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
-    assert_string_equal(field, "cases.confidence");
+    assert_string_equal(field, "confidence");
     grrl_case_config_default(&f.config);
     f.config.parts = GRRL_ALL_CONTEXT_PARTS + 1u;
     assert_int_equal(grrl_case_config_check(&f.config, &field), GRRL_ERR_ARGUMENT);
-    assert_string_equal(field, "cases.parts");
+    assert_string_equal(field, "parts");
 }
 
 static struct memory_file file = {.calls_left = -1};

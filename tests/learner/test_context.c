@@ -1,3 +1,4 @@
+/* Contexts: what is around a link, and what was tried on it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -117,8 +118,8 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     struct grrl_context contexts[GRRL_DIRECTIONS];
     grrl_attempts_look(&attempts, &model, LARGE_M);
     for (int i = 0; i < 5; i++)
-        grrl_attempts_add(&attempts, &model, 1, 2);
-    grrl_attempts_add(&attempts, &model, 1, 0);
+        grrl_attempts_add(&attempts, model.body[1].number, 2);
+    grrl_attempts_add(&attempts, model.body[1].number, 0);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 3);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_OTHERS_TRIED], 1);
@@ -135,7 +136,7 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     grrl_attempts_look(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
-    grrl_attempts_add(&attempts, &model, 1, 2);
+    grrl_attempts_add(&attempts, model.body[1].number, 2);
     model.body[1].number = 7; /* gone, and somebody else in its place */
     grrl_attempts_look(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);

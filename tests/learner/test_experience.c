@@ -1,3 +1,4 @@
+/* Experiences: updates, recall against trying every mapping, eviction. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

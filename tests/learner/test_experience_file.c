@@ -1,3 +1,4 @@
+/* Files of experiences: round trips, cuts and damage at every byte. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -151,7 +152,7 @@ static void an_empty_store_is_a_file_too(void **state)
     init(&original, 1, 1);
     assert_int_equal(save(&original, &file), GRRL_OK);
     assert_int_equal(file.size, HEADER + CRC);
-    const uint8_t start[] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0, 2, 0, GRRL_MAX_PROPERTIES, 6};
+    const uint8_t start[] = {'G', 'R', 'R', 'L', 'e', 'x', 'p', 0, 3, 0, GRRL_MAX_PROPERTIES, 6};
     assert_memory_equal(file.bytes, start, sizeof start);
     assert_int_equal(load(&copy, &file), GRRL_OK);
     check_empty(&copy.store);

@@ -1,3 +1,4 @@
+/* Pushes under motions of the model, free starts, and refusals. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

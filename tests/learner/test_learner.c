@@ -1,3 +1,4 @@
+/* The learner with each policy, on a chain that shows itself as it is pushed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,44 +12,42 @@
 #include "grrl/structure/term.h"
 #include "hidden_chain.h"
 #include "memory_file.h"
+#include "policy_memory.h"
 #include "store_check.h"
 
 #define SEED UINT64_C(20080630)
 
-enum { CASES = 100, STATES = 60, EXPERIENCES = 150, MOST_PUSHES = 300 };
+enum { ENTRIES = 150, MOST_PUSHES = 300 };
 
 struct fixture {
     struct grrl_learner learner;
     struct grrl_learner_config config;
-    struct grrl_learner_memory memory;
-    struct grrl_case cases[CASES];
-    struct grrl_experience_state states[STATES];
-    struct grrl_experience experiences[EXPERIENCES];
+    POLICY_MEMORY(ENTRIES) policy;
 };
 
 static struct fixture one, two;
 
-static void init(struct fixture *fixture, enum grrl_policy_kind kind, uint64_t seed)
+static void init_with(struct fixture *fixture, const struct grrl_policy_type *type,
+                      uint32_t capacity, uint64_t seed)
 {
+    struct grrl_policy policy;
     grrl_learner_config_default(&fixture->config);
-    fixture->config.policy.kind = kind;
     fixture->config.seed = seed;
-    fixture->memory = (struct grrl_learner_memory){
-        .cases = fixture->cases,
-        .cases_capacity = CASES,
-        .states = fixture->states,
-        .states_capacity = STATES,
-        .experiences = fixture->experiences,
-        .experiences_capacity = EXPERIENCES,
-    };
-    assert_int_equal(grrl_learner_init(&fixture->learner, &fixture->config, &fixture->memory),
+    assert_int_equal(grrl_policy_make(type, fixture->policy.bytes, sizeof fixture->policy.bytes,
+                                      capacity, NULL, &policy),
                      GRRL_OK);
+    assert_int_equal(grrl_learner_init(&fixture->learner, &fixture->config, policy), GRRL_OK);
+}
+
+static void init(struct fixture *fixture, const struct grrl_policy_type *type, uint64_t seed)
+{
+    init_with(fixture, type, ENTRIES, seed);
 }
 
 static int set_up(void **state)
 {
     (void)state;
-    init(&one, GRRL_POLICY_LEARN, SEED);
+    init(&one, &grrl_policy_learn, SEED);
     world_start("RPR");
     return 0;
 }
@@ -70,7 +69,8 @@ static unsigned run_trial(struct fixture *fixture, const char *joints, uint32_t 
         bool ended = world_push(&decision.choice);
         assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
         assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
-        check_store(&learner->store);
+        if (learner->policy.type == &grrl_policy_paper)
+            check_store(&fixture->policy.paper.store);
         sum += update.reward;
         if (ended) { /* every link but the first, every joint, the trial */
             assert_true(sum == 2.0f * (float)strlen(joints) + 1.0f);
@@ -89,8 +89,9 @@ static unsigned run_trials(struct fixture *fixture, const char *joints, uint32_t
     return pushes;
 }
 
-static const enum grrl_policy_kind learners[] = {GRRL_POLICY_LEARN, GRRL_POLICY_PAPER};
-enum { LEARNERS = 2 };
+static const struct grrl_policy_type *const learners[] = {&grrl_policy_learn, &grrl_policy_paper,
+                                                          &grrl_policy_greedy};
+enum { LEARNERS = 3 };
 
 static void learning_needs_fewer_pushes_than_chance(void **state)
 {
@@ -105,13 +106,14 @@ static void learning_needs_fewer_pushes_than_chance(void **state)
             (void)run_trials(&one, "RPRPR", 1, 20, &hash);
             learned[i] += run_trials(&one, "RPRPR", 21, 20, &hash);
         }
-        init(&two, GRRL_POLICY_RANDOM, seed);
+        init(&two, &grrl_policy_random, seed);
         chance += run_trials(&two, "RPRPR", 1, 20, &hash);
-        assert_int_equal(two.learner.store.n_experiences, 0);
-        assert_int_equal(two.learner.cases.n, 0);
+        assert_int_equal(grrl_learner_usage(&two.learner).n, 0);
     }
-    print_message("learn %u, paper %u, random %u pushes\n", learned[0], learned[1], chance);
-    assert_true(2 * learned[0] < chance && 2 * learned[1] < chance);
+    print_message("learn %u, paper %u, greedy %u, random %u pushes\n", learned[0], learned[1],
+                  learned[2], chance);
+    for (int i = 0; i < LEARNERS; i++)
+        assert_true(2 * learned[i] < chance);
 }
 
 static void experience_of_one_object_helps_with_another(void **state)
@@ -169,8 +171,7 @@ static void what_was_learned_can_be_saved(void **state)
         init(&two, learners[i], SEED);
         assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_OK);
         assert_int_equal(file.at, file.size);
-        assert_int_equal(grrl_learner_usage_of(&two.learner).n,
-                         grrl_learner_usage_of(&one.learner).n);
+        assert_int_equal(grrl_learner_usage(&two.learner).n, grrl_learner_usage(&one.learner).n);
         unsigned pushes = run_trials(&one, "RPRP", 11, 10, &a);
         assert_int_equal(run_trials(&two, "RPRP", 11, 10, &b), pushes);
         assert_int_equal(a, b);
@@ -179,8 +180,7 @@ static void what_was_learned_can_be_saved(void **state)
             file.size = cut;
             file.at = 0;
             assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_IO);
-            assert_int_equal(two.learner.cases.n, 0);
-            assert_int_equal(two.learner.store.n_experiences, 0);
+            assert_int_equal(grrl_learner_usage(&two.learner).n, 0);
             file.size = whole;
         }
     }
@@ -192,8 +192,8 @@ static void nothing_but_experience_outlives_a_trial(void **state)
     (void)state;
     uint32_t a = 0;
     uint32_t b = 0;
-    init(&one, GRRL_POLICY_RANDOM, SEED);
-    init(&two, GRRL_POLICY_RANDOM, SEED);
+    init(&one, &grrl_policy_random, SEED);
+    init(&two, &grrl_policy_random, SEED);
     (void)run_trial(&one, "RP", 3, &a);
     a = 0;
     world_start("RPR");
@@ -218,7 +218,7 @@ static struct grrl_update adopt(struct grrl_learner *learner, uint16_t number, u
 {
     struct grrl_decision decision;
     struct grrl_update update;
-    assert_int_equal(grrl_learner_adopt(learner, number, direction, &decision), GRRL_OK);
+    assert_int_equal(grrl_learner_adopt(learner, number, direction, false, &decision), GRRL_OK);
     (void)world_push(&decision.choice);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
@@ -253,12 +253,11 @@ static void targets_look_one_push_ahead(void **state)
 {
     (void)state;
     struct grrl_learner *learner = &one.learner;
-    init(&one, GRRL_POLICY_PAPER, SEED);
+    init(&one, &grrl_policy_paper, SEED);
     start(learner);
     struct grrl_update update = adopt(learner, 1, 2, false);
     assert_true(update.target == 2.0f);
-    assert_int_equal(update.experience, 0);
-    assert_int_equal(update.updated_case, GRRL_NO_CASE);
+    assert_int_equal(update.index, 0);
     start(learner);
     world_start("RPR");
     start(learner);
@@ -267,7 +266,7 @@ static void targets_look_one_push_ahead(void **state)
     assert_true(update.target == 0.1f * 2.0f);
     update = adopt(learner, 1, 2, true); /* nothing follows the end */
     assert_true(update.target == 3.0f);
-    const struct grrl_q *q = &learner->store.experiences[update.experience].q;
+    const struct grrl_q *q = &one.policy.paper.store.experiences[update.index].q;
     assert_int_equal(q->n, 2);
     assert_true(q->value > 2.29f && q->value < 2.31f);
 }
@@ -277,11 +276,11 @@ static void a_decision_by_experience_tells_why(void **state)
     (void)state;
     struct grrl_learner *learner = &one.learner;
     struct grrl_decision decision;
-    init(&one, GRRL_POLICY_PAPER, SEED);
+    init(&one, &grrl_policy_paper, SEED);
     start(learner);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLORE);
-    assert_int_equal(decision.choice.from.experience, GRRL_NO_EXPERIENCE);
+    assert_int_equal(decision.choice.source.kind, GRRL_SOURCE_NONE);
     assert_true(decision.choice.phi == 0.0f && decision.push.force_n == 10.0f);
     assert_int_equal(decision.body_number, 1);
     start(learner);
@@ -294,14 +293,20 @@ static void a_decision_by_experience_tells_why(void **state)
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLOIT);
     assert_int_equal(decision.choice.direction, 2);
-    assert_int_equal(decision.choice.from.level, GRRL_RECALL_EXACT);
+    assert_int_equal(decision.choice.source.kind, GRRL_SOURCE_EXACT);
     assert_true(decision.choice.phi == 1.0f && decision.choice.value == 2.0f);
     assert_true(decision.choice.lower < 2.0f && decision.choice.upper > 2.0f);
-    assert_int_equal(learner->store.experiences[decision.choice.from.experience].used_at,
-                     learner->store.clock);
+    const struct grrl_experience_store *store = &one.policy.paper.store;
+    const struct grrl_experience *best = &store->experiences[decision.choice.source.index];
+    assert_int_equal(best->used_at, store->clock);
     start(learner);
-    assert_int_equal(grrl_learner_adopt(learner, 1, 2, &decision), GRRL_OK);
-    assert_int_equal(decision.choice.reason, GRRL_CHOICE_FOREIGN);
+    (void)adopt(learner, 1, 3, false);
+    assert_true(best->used_at < store->clock);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 2, true, &decision), GRRL_OK);
+    assert_int_equal(best->used_at, store->clock); /* as when it was chosen here */
+    start(learner);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 2, false, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_ADOPTED);
     assert_true(decision.choice.value == 2.0f);
 }
 
@@ -313,31 +318,31 @@ static void a_decision_by_cases_tells_why(void **state)
     start(learner);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLORE);
-    assert_int_equal(decision.choice.closest_case, GRRL_NO_CASE);
-    assert_int_equal(decision.choice.from.experience, GRRL_NO_EXPERIENCE);
+    assert_int_equal(decision.choice.source.kind, GRRL_SOURCE_NONE);
+    assert_int_equal(decision.choice.source.index, GRRL_NO_ENTRY);
     assert_true(decision.choice.phi == 0.0f && decision.choice.value == 0.5f);
     start(learner);
     struct grrl_update update = adopt(learner, 1, 2, false);
     assert_true(update.reward == 2.0f && update.target == 2.0f);
-    assert_int_equal(update.updated_case, 0);
-    assert_int_equal(update.experience, GRRL_NO_EXPERIENCE);
+    assert_int_equal(update.index, 0);
     world_start("RPR");
     start(learner);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(decision.choice.reason, GRRL_CHOICE_EXPLOIT);
     assert_int_equal(decision.choice.direction % 3, 2); /* across, to either side */
-    assert_int_equal(decision.choice.closest_case, 0);
-    assert_int_equal(decision.choice.mismatches, 0);
+    assert_int_equal(decision.choice.source.kind, GRRL_SOURCE_CASES);
+    assert_int_equal(decision.choice.source.index, 0);
+    assert_int_equal(decision.choice.source.distance, 0);
     /* one reward of 2, of another trial, over a prior of weight 1 and 0.5 */
-    float trust = 1.0f / (1.0f + grrl_exp(-one.learner.config.policy.cases.confidence));
+    float trust = 1.0f / (1.0f + grrl_exp(-one.policy.learn.config.confidence));
     float value = (0.5f + trust * 2.0f) / (1.0f + trust);
     assert_true(fabsf(decision.choice.value - value) < 1e-5f);
     assert_true(decision.choice.lower < value && decision.choice.upper > value);
     start(learner);
-    assert_int_equal(grrl_learner_adopt(learner, 1, 0, &decision), GRRL_OK);
-    assert_int_equal(decision.choice.reason, GRRL_CHOICE_FOREIGN);
-    assert_int_equal(decision.choice.closest_case, 0);
-    assert_int_equal(decision.choice.mismatches, 1);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 0, false, &decision), GRRL_OK);
+    assert_int_equal(decision.choice.reason, GRRL_CHOICE_ADOPTED);
+    assert_int_equal(decision.choice.source.index, 0);
+    assert_int_equal(decision.choice.source.distance, 1);
     assert_true(decision.choice.value > 0.5f && decision.choice.value < value);
 }
 
@@ -365,11 +370,11 @@ static void calls_out_of_order_are_refused(void **state)
     world.n_bodies = 1;
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     assert_int_equal(grrl_learner_learn(learner, false, &update), GRRL_ERR_ORDER);
-    assert_int_equal(grrl_learner_adopt(learner, 99, 0, &decision), GRRL_ERR_NONE);
-    assert_int_equal(grrl_learner_adopt(learner, 1, 6, &decision), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_adopt(learner, 99, 0, false, &decision), GRRL_ERR_NONE);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 6, false, &decision), GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_OK);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
-    assert_int_equal(grrl_learner_adopt(learner, 1, 0, &decision), GRRL_ERR_ORDER);
+    assert_int_equal(grrl_learner_adopt(learner, 1, 0, false, &decision), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_learn(learner, false, &update), GRRL_ERR_ORDER);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
@@ -378,70 +383,215 @@ static void calls_out_of_order_are_refused(void **state)
     assert_int_equal(grrl_learner_choose(learner, &decision), GRRL_ERR_ORDER);
 }
 
-static void a_learner_of_one_experience_works(void **state)
+static void a_learner_of_one_entry_works(void **state)
 {
     (void)state;
     for (int i = 0; i < LEARNERS; i++) {
         uint32_t hash = 0;
-        one.config.policy.kind = learners[i];
-        one.memory.cases_capacity = one.memory.states_capacity = 1;
-        one.memory.experiences_capacity = 1;
-        assert_int_equal(grrl_learner_init(&one.learner, &one.config, &one.memory), GRRL_OK);
+        init_with(&one, learners[i], 1, SEED);
         (void)run_trials(&one, "RPR", 1, 10, &hash);
-        assert_int_equal(grrl_learner_usage_of(&one.learner).n, 1);
-        assert_int_equal(grrl_learner_usage_of(&one.learner).capacity, 1);
-        assert_true(grrl_learner_usage_of(&one.learner).evictions > 0);
+        assert_int_equal(grrl_learner_usage(&one.learner).n, 1);
+        assert_int_equal(grrl_learner_usage(&one.learner).capacity, 1);
+        assert_true(grrl_learner_usage(&one.learner).evictions > 0);
     }
 }
 
 static void a_policy_needs_its_memory(void **state)
 {
     (void)state;
-    const struct grrl_learner_memory all = one.memory;
-    const struct {
-        enum grrl_policy_kind kind;
-        uint32_t cases, states, experiences;
-        enum grrl_status status;
-    } given[] = {
-        {GRRL_POLICY_LEARN, 0, STATES, EXPERIENCES, GRRL_ERR_ARGUMENT},
-        {GRRL_POLICY_LEARN, CASES, 0, 0, GRRL_OK},
-        {GRRL_POLICY_PAPER, CASES, 0, EXPERIENCES, GRRL_ERR_ARGUMENT},
-        {GRRL_POLICY_PAPER, CASES, STATES, 0, GRRL_ERR_ARGUMENT},
-        {GRRL_POLICY_PAPER, 0, STATES, EXPERIENCES, GRRL_OK},
-        {GRRL_POLICY_RANDOM, 0, 0, 0, GRRL_OK},
-    };
-    for (size_t i = 0; i < sizeof given / sizeof given[0]; i++) {
-        one.config.policy.kind = given[i].kind;
-        one.memory.cases = given[i].cases > 0 ? all.cases : NULL;
-        one.memory.cases_capacity = given[i].cases;
-        one.memory.states = given[i].states > 0 ? all.states : NULL;
-        one.memory.states_capacity = given[i].states;
-        one.memory.experiences = given[i].experiences > 0 ? all.experiences : NULL;
-        one.memory.experiences_capacity = given[i].experiences;
-        assert_int_equal(grrl_learner_init(&one.learner, &one.config, &one.memory),
-                         given[i].status);
-        if (given[i].status == GRRL_OK) {
+    struct grrl_policy policy;
+    for (int i = 0; i < LEARNERS; i++) {
+        size_t bytes = learners[i]->bytes(10);
+        assert_int_equal(grrl_policy_make(learners[i], one.policy.bytes, bytes, 0, NULL, &policy),
+                         GRRL_ERR_ARGUMENT);
+        assert_int_equal(
+            grrl_policy_make(learners[i], one.policy.bytes, bytes - 1, 10, NULL, &policy),
+            GRRL_ERR_FULL);
+        assert_int_equal(grrl_policy_make(learners[i], one.policy.bytes, bytes, 10, NULL, &policy),
+                         GRRL_OK);
+        assert_ptr_equal(policy.type, learners[i]);
+    }
+    assert_int_equal(grrl_policy_make(&grrl_policy_random, NULL, 0, 0, NULL, &policy), GRRL_OK);
+    assert_int_equal(grrl_learner_init(&one.learner, &one.config, policy), GRRL_OK);
+    uint32_t hash = 0;
+    (void)run_trials(&one, "RPR", 1, 3, &hash);
+    const struct grrl_io io = memory_file_io(&file);
+    assert_int_equal(grrl_learner_save(&one.learner, &io), GRRL_ERR_NONE);
+    assert_int_equal(grrl_learner_load(&one.learner, &io), GRRL_ERR_NONE);
+    grrl_learner_clear(&one.learner);
+}
+
+static void every_policy_is_found_by_its_name(void **state)
+{
+    (void)state;
+    unsigned n = 0;
+    for (const struct grrl_policy_type *const *type = grrl_policies; *type != NULL; type++, n++) {
+        assert_ptr_equal(grrl_policy_find((*type)->name), *type);
+        assert_true(strlen((*type)->name) < GRRL_POLICY_NAME_BYTES);
+        assert_true((*type)->config_bytes <= GRRL_POLICY_CONFIG_BYTES);
+    }
+    assert_int_equal(n, 4);
+    assert_ptr_equal(grrl_policies[0], &grrl_policy_learn);
+    assert_null(grrl_policy_find("nobody"));
+    assert_null(grrl_policy_find(""));
+}
+
+/* A file is of one policy; learn and greedy keep the same cases. */
+static void a_file_of_another_policy_is_refused(void **state)
+{
+    (void)state;
+    const struct grrl_io io = memory_file_io(&file);
+    for (int i = 0; i < LEARNERS; i++) {
+        for (int j = 0; j < LEARNERS; j++) {
             uint32_t hash = 0;
+            init(&one, learners[i], SEED);
             (void)run_trials(&one, "RPR", 1, 3, &hash);
+            file.size = file.at = 0;
+            assert_int_equal(grrl_learner_save(&one.learner, &io), GRRL_OK);
+            init(&two, learners[j], SEED);
+            bool same = (learners[i] == &grrl_policy_paper) == (learners[j] == &grrl_policy_paper);
+            assert_int_equal(grrl_learner_load(&two.learner, &io),
+                             same ? GRRL_OK : GRRL_ERR_POLICY);
         }
     }
+}
+
+/* What stood before and behind what `learner` learned in a file of version 0.1.0: the section of
+ * the other learner, empty. */
+static const unsigned char no_experiences[] = {
+    'G', 'R', 'R', 'L', 'e', 'x', 'p', 0, 2, 0, GRRL_MAX_PROPERTIES, GRRL_DIRECTIONS};
+
+static void put(const void *bytes, size_t n)
+{
+    memcpy(file.bytes + file.size, bytes, n);
+    file.size += n;
+}
+
+/* CRC-32 (IEEE 802.3). */
+static void put_crc(size_t from)
+{
+    uint32_t crc = UINT32_MAX;
+    for (size_t i = from; i < file.size; i++) {
+        crc ^= file.bytes[i];
+        for (int bit = 0; bit < 8; bit++)
+            crc = (crc >> 1) ^ ((crc & 1u) != 0 ? UINT32_C(0xedb88320) : 0u);
+    }
+    crc = ~crc;
+    const unsigned char bytes[4] = {(unsigned char)crc, (unsigned char)(crc >> 8),
+                                    (unsigned char)(crc >> 16), (unsigned char)(crc >> 24)};
+    put(bytes, 4);
+}
+
+static void old_files_load(void **state)
+{
+    (void)state;
+    static unsigned char learned[sizeof file.bytes];
+    const unsigned char zeros[12] = {0};
+    const struct grrl_io io = memory_file_io(&file);
+    uint32_t hash = 0;
+    init(&one, &grrl_policy_learn, SEED);
+    (void)run_trials(&one, "RPR", 1, 5, &hash);
+    file.size = file.at = 0;
+    assert_int_equal(grrl_learner_save(&one.learner, &io), GRRL_OK);
+    size_t n = file.size;
+    memcpy(learned, file.bytes, n);
+    file.size = file.at = 0;
+    put(no_experiences, sizeof no_experiences);
+    put(zeros, 12);
+    put_crc(0);
+    put(learned, n);
+    init(&two, &grrl_policy_learn, SEED);
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_OK);
+    assert_int_equal(file.at, file.size);
+    assert_int_equal(grrl_learner_usage(&two.learner).n, grrl_learner_usage(&one.learner).n);
+    for (size_t whole = file.size; --file.size > 0;) {
+        file.at = 0;
+        assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_IO);
+        (void)whole;
+    }
+    file.size = sizeof no_experiences + 12 + 4 + n;
+    file.bytes[13] ^= 1; /* damaged: it would hold 256 states */
+    file.at = 0;
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_POLICY);
+    file.bytes[13] ^= 1;
+    file.bytes[20] ^= 1; /* its clock */
+    file.at = 0;
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_CORRUPT);
+    /* and the policy paper finds nothing of its own in it, but cases */
+    file.bytes[20] ^= 1;
+    file.at = 0;
+    init(&two, &grrl_policy_paper, SEED);
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_POLICY);
+    /* with both sections empty it is a file for either */
+    init(&one, &grrl_policy_learn, SEED);
+    file.size = file.at = 0;
+    put(no_experiences, sizeof no_experiences);
+    put(zeros, 12);
+    put_crc(0);
+    assert_int_equal(grrl_learner_save(&one.learner, &io), GRRL_OK);
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_OK);
+    assert_int_equal(file.at, file.size);
+    file.bytes[file.size - 1] ^= 1;
+    file.at = 0;
+    assert_int_equal(grrl_learner_load(&two.learner, &io), GRRL_ERR_CORRUPT);
 }
 
 static void a_wrong_configuration_is_refused(void **state)
 {
     (void)state;
+    struct grrl_policy policy;
+    struct grrl_paper_config paper;
+    grrl_paper_config_default(&paper);
+    paper.alpha = 2.0f;
+    assert_int_equal(grrl_policy_make(&grrl_policy_paper, two.policy.bytes, sizeof two.policy.bytes,
+                                      10, &paper, &policy),
+                     GRRL_ERR_ARGUMENT);
+    struct grrl_case_config cases;
+    grrl_case_config_default(&cases);
+    cases.memory = 0;
+    assert_int_equal(grrl_policy_make(&grrl_policy_learn, two.policy.bytes, sizeof two.policy.bytes,
+                                      10, &cases, &policy),
+                     GRRL_ERR_ARGUMENT);
+    policy = one.learner.policy;
     struct grrl_learner_config config = one.config;
-    config.policy.alpha = 2.0f;
-    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
-    config = one.config;
-    config.policy.cases.memory = 0;
-    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
-    config = one.config;
     config.grounding.force_n = 0.0f;
-    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(&one.learner, &config, policy), GRRL_ERR_ARGUMENT);
     config = one.config;
     config.perception.noise_m = 0.0f;
-    assert_int_equal(grrl_learner_init(&one.learner, &config, &one.memory), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_learner_init(&one.learner, &config, policy), GRRL_ERR_ARGUMENT);
+    const float wrong[] = {-0.1f, 1e9f, INFINITY, NAN};
+    for (int i = 0; i < 4; i++) {
+        config = one.config;
+        config.trial_reward = wrong[i];
+        assert_int_equal(grrl_learner_init(&one.learner, &config, policy), GRRL_ERR_ARGUMENT);
+        config = one.config;
+        config.large_m = i == 1 ? 0.0f : wrong[i];
+        assert_int_equal(grrl_learner_init(&one.learner, &config, policy), GRRL_ERR_ARGUMENT);
+    }
+}
+
+static void random_pushes_are_uniform(void **state)
+{
+    (void)state;
+    enum { LINKS = 2, ACTIONS = LINKS * GRRL_DIRECTIONS, DRAWS = 20000 };
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    struct grrl_graph graph;
+    struct grrl_random random;
+    unsigned count[ACTIONS] = {0};
+    grrl_graph_clear(&graph);
+    graph.n = LINKS;
+    grrl_random_init(&random, SEED, 1);
+    const struct grrl_view view = {.state = &graph};
+    for (int i = 0; i < DRAWS; i++) {
+        struct grrl_choice choice;
+        grrl_policy_random.choose(NULL, &view, &random, &choice);
+        assert_int_equal(choice.reason, GRRL_CHOICE_RANDOM);
+        assert_int_equal(choice.source.kind, GRRL_SOURCE_NONE);
+        assert_true(choice.link < LINKS && choice.direction < GRRL_DIRECTIONS);
+        count[choice.link * GRRL_DIRECTIONS + choice.direction]++;
+    }
+    for (int i = 0; i < ACTIONS; i++)
+        assert_true(fabs(count[i] - (double)DRAWS / ACTIONS) < 6.0 * sqrt((double)DRAWS / ACTIONS));
 }
 
 static void the_belief_is_a_term(void **state)
@@ -484,9 +634,13 @@ int main(void)
         cmocka_unit_test_setup(a_decision_by_experience_tells_why, set_up),
         cmocka_unit_test_setup(a_decision_by_cases_tells_why, set_up),
         cmocka_unit_test_setup(calls_out_of_order_are_refused, set_up),
-        cmocka_unit_test_setup(a_learner_of_one_experience_works, set_up),
+        cmocka_unit_test_setup(a_learner_of_one_entry_works, set_up),
         cmocka_unit_test_setup(a_policy_needs_its_memory, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
+        cmocka_unit_test_setup(every_policy_is_found_by_its_name, set_up),
+        cmocka_unit_test_setup(a_file_of_another_policy_is_refused, set_up),
+        cmocka_unit_test_setup(old_files_load, set_up),
+        cmocka_unit_test_setup(random_pushes_are_uniform, set_up),
         cmocka_unit_test_setup(the_belief_is_a_term, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -14,7 +14,7 @@ simulate() {
         --agent-timeout 60 --results "$name.csv" --log "$name.lcm"
     finish "$LAST" grrl-sim
     finish "$agent" "$name"
-    grep -E '^(models|decisions|lessons|experiences) ' "$name-agent.txt" >"$name.hashes"
+    grep -E '^(models|decisions|updates|store) ' "$name-agent.txt" >"$name.hashes"
 }
 
 # on_line NAME PORT DAMAGE: with a controller behind a line that damages one byte in DAMAGE
@@ -41,7 +41,7 @@ grep -q 'damaged frames: 0 out, 0 in; 0 requests sent again, 0 answers' clean-ag
     fail "damage on a clean line"
 
 # The bridge has no learning in it; the agent has, so that these names mean something.
-learning=' T grrl_(cases_learn|experience_update|policy_choose|perception_update|grounding_push)$'
+learning=' T grrl_(cases_learn|experience_update|learn_choose|perception_update|grounding_push)$'
 [ "$(nm "$AGENT" | grep -cE "$learning")" -eq 5 ] || fail "grrl-agent does not learn?"
 ! nm "$BRIDGE" | grep -E "$learning" || fail "grrl-bridge learns by itself"
 
@@ -73,11 +73,12 @@ expect() {
 expect 0 'Usage: grrl-bridge' "$BRIDGE" --help
 expect 0 'grrl-bridge [0-9]' "$BRIDGE" --version
 expect 2 'serial is needed' "$BRIDGE"
-expect 2 'must be learn, paper or random' "$BRIDGE" --serial x --policy best
-expect 2 'must be a number from 0' "$BRIDGE" --serial x --seed -1
+expect 2 'a name of 1 to 15' "$BRIDGE" --serial x --policy much-longer-than-a-name
+expect 2 'must be a whole number from 0' "$BRIDGE" --serial x --seed -1
 expect 2 'no arguments' "$BRIDGE" --serial x y
+expect 2 'serial: given twice' "$BRIDGE" --serial x --serial y
 expect 1 'start the controller first' "$BRIDGE" --serial ./none.socket --lcm-url "$url"
 : >file
 expect 1 'file' "$BRIDGE" --serial ./file --lcm-url "$url"
-expect 2 'must be a number' "$CONTROLLER" --socket x --damage few
+expect 2 'must be a whole number' "$CONTROLLER" --socket x --damage few
 expect 2 'socket is needed' "$CONTROLLER"

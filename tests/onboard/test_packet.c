@@ -105,9 +105,7 @@ static void test_decision(void **state)
         .choice = {.link = 4,
                    .direction = 5,
                    .reason = GRRL_CHOICE_EXPLOIT,
-                   .from = {.experience = GRRL_NO_EXPERIENCE},
-                   .closest_case = 70000,
-                   .mismatches = 3,
+                   .source = {GRRL_SOURCE_CASES, 3, 70000},
                    .value = 1.5f,
                    .lower = 1.25f,
                    .upper = 1.75f,
@@ -121,8 +119,8 @@ static void test_decision(void **state)
     onboard_packet_begin(&again, ONBOARD_DECISION);
     onboard_put_decision(&again, &other);
     assert_memory_equal(again.bytes, packet.bytes, packet.n);
-    assert_int_equal(other.choice.from.experience, GRRL_NO_EXPERIENCE);
-    assert_int_equal(other.choice.closest_case, 70000);
+    assert_int_equal(other.choice.source.kind, GRRL_SOURCE_CASES);
+    assert_int_equal(other.choice.source.index, 70000);
     const size_t direction = 8 * 4 + 2 + 1;
     packet.at = 0;
     packet.bytes[direction] = GRRL_DIRECTIONS;
@@ -136,10 +134,10 @@ static void test_decision(void **state)
 static void test_lesson(void **state)
 {
     (void)state;
-    const struct grrl_update update = {2.0f, 2.5f, GRRL_NO_EXPERIENCE, 9};
-    const struct grrl_learner_usage usage = {12, 256, 3};
+    const struct grrl_update update = {2.0f, 2.5f, 9};
+    const struct grrl_usage usage = {12, 256, 3};
     struct grrl_update other;
-    struct grrl_learner_usage used;
+    struct grrl_usage used;
     onboard_packet_begin(&packet, ONBOARD_UPDATE);
     onboard_put_update(&packet, &update, &usage);
     assert_true(onboard_get_update(&packet, &other, &used));

@@ -48,7 +48,7 @@ static int setup(void **state)
     onboard_controller_init(&controller, NULL);
     onboard_server_init(&server, &controller);
     onboard_link_init(&receiver, &answer);
-    onboard_put_open(&request, 3, GRRL_POLICY_LEARN);
+    onboard_put_open(&request, 3, "learn");
     assert_int_equal(ask(0), 1);
     assert_int_equal(answer.type, ONBOARD_DONE);
     assert_int_equal(status_of_answer(), GRRL_OK);
@@ -117,11 +117,11 @@ static void test_open_begins_anew_whatever_was_before(void **state)
     put_frame();
     assert_int_equal(ask(2), 1);
     for (int i = 0; i < 2; i++) { /* its first answer may be lost */
-        onboard_put_open(&request, 3, GRRL_POLICY_PAPER);
+        onboard_put_open(&request, 3, "paper");
         assert_int_equal(ask(0), 1);
         assert_int_equal(answer.type, ONBOARD_DONE);
         assert_int_equal(controller.learner.perception.counts.frames, 0);
-        assert_int_equal(controller.learner.config.policy.kind, GRRL_POLICY_PAPER);
+        assert_ptr_equal(controller.learner.policy.type, &grrl_policy_paper);
     }
 }
 
@@ -133,16 +133,20 @@ static void test_what_cannot_be_done_is_refused(void **state)
     assert_int_equal(answer.type, ONBOARD_REFUSED);
     assert_int_equal(status_of_answer(), GRRL_ERR_FORMAT);
 
-    onboard_put_open(&request, 3, GRRL_POLICY_LEARN);
+    onboard_put_open(&request, 3, "learn");
     request.bytes[0]++; /* links */
     assert_int_equal(ask(0), 1);
     assert_int_equal(answer.type, ONBOARD_REFUSED);
     assert_int_equal(status_of_answer(), GRRL_ERR_VERSION);
 
-    onboard_put_open(&request, 3, GRRL_POLICY_LEARN);
-    request.bytes[request.n - 1] = GRRL_POLICY_RANDOM + 1;
+    onboard_put_open(&request, 3, "learn");
+    request.bytes[request.n - 1] = 'x'; /* a name without an end */
     assert_int_equal(ask(0), 1);
     assert_int_equal(status_of_answer(), GRRL_ERR_FORMAT);
+
+    onboard_put_open(&request, 3, "random"); /* not in the image */
+    assert_int_equal(ask(0), 1);
+    assert_int_equal(status_of_answer(), GRRL_ERR_NONE);
 
     onboard_controller_init(&controller, NULL); /* it was restarted */
     onboard_server_init(&server, &controller);

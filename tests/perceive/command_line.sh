@@ -78,13 +78,76 @@ expect 0 '^D(lb, P(' --unit mm --svg "$WORK/slide.svg" "$WORK/slide.csv"
 grep -q 'stroke-dasharray' "$WORK/slide.svg" || wrong "the picture has no sliding axis"
 expect 1 'No such file' --svg "$WORK/no/folder.svg" "$WORK/hinge.csv"
 
+expect 2 'picture.PNG: must be a file for SVG' --svg picture.PNG "$WORK/hinge.csv"
+
+# how the joints move: 40.1 and 30 in 60 frames
+expect 0 '^D(lb, R(' --motion "$WORK/hinge_motion.csv" "$WORK/hinge.csv"
+expect 0 '^D(lb, P(' --unit mm --motion "$WORK/slide_motion.csv" "$WORK/slide.csv"
+expect 1 'No such file' --motion "$WORK/no/folder.csv" "$WORK/hinge.csv"
+expect 2 'do not go with --handle' --motion a --handle b
+for kind in hinge slide; do
+    awk -F, -v kind=$kind 'function size(v) { return v < 0 ? -v : v }
+        NR == 1 { header = $0; next }
+        { truth = kind == "hinge" ? 40.107 * $1 / 60 : 30 * $1 / 60; n++
+          off = size(size($5) - truth); worst = off > worst ? off : worst; unit = $6; frame = $1 }
+        END { exit !(header == "frame,a,b,type,value,unit" && n == 61 && frame == 60 &&
+                     worst < 0.5 && unit == (kind == "hinge" ? "degrees" : "mm")) }' \
+        "$WORK/${kind}_motion.csv" || wrong "the motion of the $kind"
+done
+
 # more tracks than the library holds are told
 awk 'BEGIN { print "frame,point,x,y"; for (f = 0; f < 3; f++) for (i = 0; i < 1100; i++)
     printf "%d,%d,%f,%f\n", f, i, i / 1000, f / 100 }' >"$WORK/many.csv"
-expect 0 'warning: 1100 tracks, but this build holds' "$WORK/many.csv"
+expect 0 'warning: 1100 tracks, but this build holds .*left out' "$WORK/many.csv"
+"$PERCEIVE" --json "$WORK/many.csv" >"$WORK/many.json" 2>/dev/null
+{ head -1 "$WORK/many.csv"; tail -n +2 "$WORK/many.csv" | sort -r; } >"$WORK/many_reversed.csv"
+"$PERCEIVE" --json "$WORK/many_reversed.csv" 2>/dev/null | cmp - "$WORK/many.json" ||
+    wrong "what is left out depends on the order of the rows"
+if command -v python3 >/dev/null; then
+    python3 -c 'import json, sys
+model = json.load(open(sys.argv[1]))
+out = model["left_out"]
+assert out["tracks"] == len(set(out["points"])) < 1100 and model["tracks"] == 1100, out
+assert abs(out["percent"] - 100 * out["tracks"] / 1100) < 0.1, out
+used = {i for body in model["bodies"] for i in body["features"]}
+used |= set(model["background"]) | set(model["unassigned"])
+assert used.isdisjoint(out["points"]) and len(used) + out["tracks"] == 1100
+assert model["dropped"]["beyond_capacity"] == 3 * out["tracks"], model["dropped"]
+assert len(model["warnings"]) == 2, model["warnings"] # and more than a third of all points' "$WORK/many.json" ||
+        wrong "the JSON does not name the tracks left out"
+fi
 printf 'frame,point,x,y\n0,1,5000,0\n1,1,5000,0\n' >"$WORK/far.csv"
-expect 1 'no point is visible' "$WORK/far.csv"
+expect 1 'every point lies too far from the origin: pixels' "$WORK/far.csv"
+printf 'frame,point,x,y\n0,1,,\n1,1,,\n' >"$WORK/nothing.csv"
+expect 1 'no point is visible' "$WORK/nothing.csv"
 
+# lost points: the same answer as when they are not written at all
+awk -F, 'NR == 1 || ($1 - 100) / 3 % 5 != 2 || $2 < 20 || $2 > 40' "$WORK/hinge.csv" >"$WORK/gaps.csv"
+awk -F, -v OFS=, 'NR > 1 && ($1 - 100) / 3 % 5 == 2 && $2 >= 20 && $2 <= 40 { $3 = $4 = 0 } 1' \
+    "$WORK/hinge.csv" >"$WORK/zeros.csv"
+awk -F, -v OFS=, 'NR > 1 && ($1 - 100) / 3 % 5 == 2 && $2 >= 20 && $2 <= 40 { $3 = $4 = "NaN" } 1' \
+    "$WORK/hinge.csv" >"$WORK/nans.csv"
+awk -F, -v OFS=, 'NR > 1 { k = $1; if ((k - 100) / 3 % 5 == 2 && $2 >= 20 + int((k - 100) / 15) && $2 <= 40) {
+    $3 = y[k]; $4 = x[k] } y[k] = $3; x[k] = $4 } 1' "$WORK/hinge.csv" >"$WORK/frozen.csv"
+"$PERCEIVE" "$WORK/gaps.csv" | sed '/^points dropped/d' >"$WORK/gaps"
+for kind in zeros nans; do
+    "$PERCEIVE" "$WORK/$kind.csv" 2>/dev/null | sed '/^points dropped/d' | cmp - "$WORK/gaps" ||
+        wrong "$kind are taken for positions"
+done
+expect 0 'warning: 147 of 2196 positions are exactly (0, 0)' "$WORK/zeros.csv"
+expect 0 '"marked": 147' --json "$WORK/zeros.csv"
+expect 0 'warning: 147 of 2196 positions are empty or NaN' "$WORK/nans.csv"
+expect 0 'positions repeat the last one exactly' "$WORK/frozen.csv"
+
+# units doubted
+awk -F, -v OFS=, 'NR > 1 { $3 = 0.5 + $3 / 4; $4 = 0.5 + $4 / 4 } 1' "$WORK/hinge.csv" >"$WORK/norm.csv"
+expect 0 'warning: all points lie within 0 to 1: normalised' "$WORK/norm.csv"
+expect 0 'warning: all points lie within 0 to 1: normalised' --unit px "$WORK/norm.csv"
+"$PERCEIVE" --unit m "$WORK/norm.csv" 2>&1 | grep -q normalised && wrong "--unit m is doubted"
+awk -F, -v OFS=, 'NR > 1 { $3 *= 30; $4 *= 30 } 1' "$WORK/hinge.csv" >"$WORK/wide.csv"
+expect 0 'm apart: pixels or millimetres' "$WORK/wide.csv"
+printf 'frame,point,x,y\n0,1,0,0\n0,2,1,0\n0,3,2,0\n1,1,0,0\n1,2,1,0\n1,3,2,1\n' >"$WORK/three.csv"
+expect 0 'warning: 3 tracks: a link needs 4 points or more' "$WORK/three.csv"
 
 # a noise that cannot be measured
 printf 'frame,point,x,y\n0,1,0,0\n1,1,0,0\n2,1,1,0\n' >"$WORK/short.csv"
@@ -100,6 +163,9 @@ expect 0 '^revolute 1.000' --handle "$WORK/door"
 expect 0 '"radius": 0.4' --handle "$WORK/door" --json
 expect 0 '^prismatic [01]' --handle "$WORK/drawer" --unit mm
 expect 1 'is the unit right' --handle "$WORK/drawer" --unit m
+
+awk '{ print $1, $2, $3, 0, 0, 0, 1 }' "$WORK/door" >"$WORK/poses"
+"$PERCEIVE" --handle "$WORK/poses" | cmp - <("$PERCEIVE" --handle "$WORK/door") || wrong "the poses"
 
 # what is wrong, and where
 printf 'frame,point,x,y\n0,1,2,oops\n' >"$WORK/bad.csv"

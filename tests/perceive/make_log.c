@@ -1,7 +1,10 @@
 /* Writes an LCM log: make_log FILE KIND. Two trials of a hinge that opens while the phase says
- * PUSHING, frames repeated as in lock-step; KIND `damaged` cuts some messages short, `empty` has
- * another channel only. */
+ * PUSHING, frames repeated as in lock-step. KIND `damaged` cuts some messages short, `empty` has
+ * another channel only, `mixed` has messages of another session, in which nothing moves, after
+ * every third one, `restarted` has that session first; `ended` tells that the first trial has
+ * ended, and of the second that it runs. */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -60,6 +63,50 @@ static int write_frame(lcm_eventlog_t *log, const char *kind, int trial, int fra
     return status != 0 ? status : write_event(log, channel, data, size);
 }
 
+/* A message of another sender, which sees the same points at rest. */
+static int write_other(lcm_eventlog_t *log, int frame)
+{
+    int64_t seq = points.message.seq;
+    points.message.session_id = 9;
+    points.message.seq = frame + 1;
+    int status = write_frame(log, "whole", 1, 0);
+    points.message.session_id = 7;
+    points.message.seq = seq;
+    return status;
+}
+
+static int write_trial(lcm_eventlog_t *log, int trial, int8_t phase)
+{
+    uint8_t data[GRRL_WIRE_MAX_BYTES];
+    struct grrl_wire_why why;
+    const grrl_trial_t message = {.session_id = 7,
+                                  .trial_id = trial,
+                                  .revision = 2 * trial + phase,
+                                  .judged_cmd_seq = -1,
+                                  .phase = phase,
+                                  .outcome = phase == GRRL_TRIAL_T_ENDED};
+    int size = grrl_wire_encode_trial(&message, sizeof data, data, &why);
+    return size < 0 ? -1 : write_event(log, GRRL_CHANNEL_TRIAL, data, size);
+}
+
+static int write_trials(lcm_eventlog_t *log, const char *kind)
+{
+    int status = 0;
+    bool tells = strcmp(kind, "ended") == 0;
+    for (int trial = 1; trial <= 2; trial++) {
+        if (tells)
+            status |= write_trial(log, trial, GRRL_TRIAL_T_RUNNING);
+        for (int frame = 0; frame < FRAMES; frame++) {
+            status |= write_frame(log, kind, trial, frame);
+            if (strcmp(kind, "mixed") == 0 && frame % 3 == 0)
+                status |= write_other(log, FRAMES * trial + frame);
+        }
+        if (tells && trial == 1)
+            status |= write_trial(log, trial, GRRL_TRIAL_T_ENDED);
+    }
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 3)
@@ -71,9 +118,9 @@ int main(int argc, char **argv)
     points.message.session_id = 7;
     points.message.mode = GRRL_POINTS_T_LOCK_STEP;
     int status = 0;
-    for (int trial = 1; trial <= 2; trial++)
-        for (int frame = 0; frame < FRAMES; frame++)
-            status |= write_frame(log, argv[2], trial, frame);
+    for (int frame = 0; strcmp(argv[2], "restarted") == 0 && frame < FRAMES; frame++)
+        status |= write_other(log, frame);
+    status |= write_trials(log, argv[2]);
     lcm_eventlog_destroy(log);
     return status != 0;
 }

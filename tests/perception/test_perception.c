@@ -158,7 +158,7 @@ static void the_table_beside_the_object_is_no_link(void **state)
     for (int i = 0; i < 5; i++)
         (void)world_add_point(&world, -1, -0.14f + 0.06f * (float)i, 0.032f);
     world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     const struct grrl_model *model = grrl_perception_model(&perception);
     int beside = 0;
@@ -202,7 +202,7 @@ static uint32_t dropped_when_off(uint64_t seed, int off)
                 world.y[i] += frame.id[i] == world.id[point] ? 0.009f : 0.0f;
         grrl_perception_observe(&perception, &frame, true);
     }
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     return perception.counts.outliers - before;
 }
@@ -374,7 +374,7 @@ static void a_keyframe_beside_the_motion_does_not_hide_a_joint(void **state)
         struct grrl_frame frame = world_frame(&world);
         grrl_perception_observe(&perception, &frame, true);
     }
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     assert_true(is_the_chain(grrl_perception_model(&perception)));
 }

@@ -34,7 +34,7 @@ static void outliers_join_no_arms_of_a_star(void **state)
         make_star(seed);
         world.missing = 0.2f;
         world.outliers = 0.02f;
-        world_rest(&world, &perception, 10);
+        world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
         assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
         for (int i = 0; i < 9; i++) {
             int leg = 1 + (int)grrl_random_below(&world.random, 3);
@@ -59,7 +59,7 @@ static void branches_and_numbers_stay(void **state)
 {
     (void)state;
     make_star(8);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
     move_one(1, -0.4f);
     uint16_t first = grrl_perception_model(&perception)->body[0].number;
@@ -87,7 +87,7 @@ static void start_parallelogram(uint64_t seed, float noise_m)
     world.q[arm[0]] = world.q[arm[1]] = 1.4f;
     world.q[top] = -1.4f;
     world_shuffle_ids(&world);
-    world_rest(&world, &perception, 10);
+    world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
 }
 
@@ -139,7 +139,7 @@ static void crossing_links_are_parted_right(void **state)
             world.local[i].x -= world.body[i] == 1 ? world.length_m / 2 : 0.0f;
         world.q[1] = world_uniform(&world, 0.4f, 1.2f);
         world_shuffle_ids(&world);
-        world_rest(&world, &perception, 10);
+        world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
         assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
         for (int i = 0; i < 4; i++) {
             move_one(1, world_uniform(&world, 0.0f, 0.06f));

@@ -11,10 +11,8 @@
 
 #include <lcm/lcm.h>
 
-extern "C" {
 #include "grrl/base/random.h"
 #include "wire.h"
-}
 
 namespace bad_bus
 {

@@ -14,15 +14,15 @@
 #include <tuple>
 #include <vector>
 
-#include "bad_bus.hpp"
-#include "node.hpp"
-
 extern "C" {
 #include <cmocka.h>
+}
 
 #include "agent.h"
+#include "bad_bus.hpp"
 #include "grrl/learner/relational_q/experience.h"
-}
+#include "node.hpp"
+#include "policy_memory.h"
 
 namespace harness
 {
@@ -52,6 +52,7 @@ struct Outcome {
     std::string notes;     /* of all agents and simulators */
     int rival_lessons = 0; /* of the second agent */
     bool blind = false;    /* the simulator gave up */
+    int64_t frozen_us = 0; /* how long a peer stood still while the others had nothing to do */
 };
 
 struct Setup {
@@ -72,7 +73,7 @@ struct Setup {
     size_t stop_agent_at = 0; /* the first one, for good */
     double dropout = 0.0;     /* of tracked points */
     bad_bus::Faults faults;
-    enum grrl_status (*choose)(void *, grrl_learner *, grrl_decision *) = nullptr;
+    const grrl_policy_type *policy = &grrl_policy_learn;
 };
 
 inline int64_t clock_us;
@@ -94,9 +95,7 @@ inline int append(void *context, const void *bytes, size_t size)
 struct AgentHost {
     class Run *run = nullptr;
     grrl_agent agent;
-    std::vector<grrl_case> cases;
-    std::vector<grrl_experience_state> states;
-    std::vector<grrl_experience> experiences;
+    POLICY_MEMORY(capacity) policy;
 };
 
 class Run
@@ -131,8 +130,11 @@ public:
             assert_true(step < 5000000);
             idle = handle() ? 0 : idle + 1;
             /* Time passes only when there is nothing to do: the machine is infinitely fast. */
-            if (idle > 0)
+            if (idle > 0) {
+                bool stands = frozen(setup_.freeze_agent_at) || frozen(setup_.freeze_node_at);
+                outcome_.frozen_us += stands ? 5000 : 0;
                 clock_us += 5000;
+            }
             tick();
             if (step % 7 == 0)
                 disturb();
@@ -140,7 +142,8 @@ public:
         }
         AgentHost *last = agent_ != nullptr ? agent_.get() : rival_.get();
         grrl_io io = {&outcome_.experiences, append, nullptr};
-        assert_int_equal(grrl_learner_save(&last->agent.learner, &io), GRRL_OK);
+        if (setup_.policy->save != nullptr)
+            assert_int_equal(grrl_learner_save(&last->agent.learner, &io), GRRL_OK);
         outcome_.agent_repeated = last->agent.counts.repeated;
         outcome_.agent_foreign = last->agent.counts.foreign;
         outcome_.agent_rejected = last->agent.counts.rejected;
@@ -169,9 +172,6 @@ private:
     {
         auto host = std::make_unique<AgentHost>();
         host->run = this;
-        host->cases.resize(capacity);
-        host->states.resize(capacity);
-        host->experiences.resize(capacity);
         grrl_agent_config config{};
         grrl_learner_config_default(&config.learner);
         config.learner.seed = setup_.seed;
@@ -179,9 +179,10 @@ private:
         config.now_us = agent_clock;
         config.on_event = on_event;
         config.context = host.get();
-        config.choose = setup_.choose;
-        config.memory = {host->cases.data(),       capacity, host->states.data(), capacity,
-                         host->experiences.data(), capacity};
+        assert_int_equal(grrl_policy_make(setup_.policy, host->policy.bytes,
+                                          sizeof host->policy.bytes, capacity, nullptr,
+                                          &config.policy),
+                         GRRL_OK);
         assert_int_equal(grrl_agent_init(&host->agent, &config, agent_lcm_), GRRL_OK);
         return host;
     }

@@ -96,17 +96,20 @@ void a_restarted_simulator_starts_over(void **)
     assert_true(outcome.agent_foreign > 0); /* until the old one was silent for long enough */
 }
 
-grrl_status first_link_forward(void *, grrl_learner *learner, grrl_decision *decision)
+void first_link_forward(void *, const grrl_view *, grrl_random *, grrl_choice *choice)
 {
-    const grrl_model *model = grrl_perception_model(&learner->perception);
-    return grrl_learner_adopt(learner, model->body[0].number, 0, decision);
+    *choice = grrl_choice{};
+    choice->reason = GRRL_CHOICE_RULE;
+    choice->source = grrl_no_source();
 }
 
-void somebody_else_may_choose(void **)
+void a_policy_of_ones_own_chooses(void **)
 {
     Setup setup;
     setup.cap = 5;
-    setup.choose = first_link_forward;
+    grrl_policy_type forward = grrl_policy_random;
+    forward.choose = first_link_forward;
+    setup.policy = &forward;
     Run run(setup);
     Outcome outcome = run.finish();
     assert_int_equal(outcome.trials.size(), 3);
@@ -118,7 +121,7 @@ void somebody_else_may_choose(void **)
             continue;
         assert_true(grrl_wire_decode_decision(
             message.data.data(), static_cast<uint32_t>(message.data.size()), &decision, &why));
-        assert_int_equal(decision.reason, GRRL_DECISION_T_FOREIGN);
+        assert_int_equal(decision.reason, GRRL_DECISION_T_RULE);
         assert_int_equal(decision.direction_deg, 0);
         decisions++;
     }
@@ -137,7 +140,7 @@ int main()
         cmocka_unit_test(old_messages_change_nothing),
         cmocka_unit_test(foreign_and_malformed_messages_change_nothing),
         cmocka_unit_test(real_time_works_too),
-        cmocka_unit_test(somebody_else_may_choose),
+        cmocka_unit_test(a_policy_of_ones_own_chooses),
         cmocka_unit_test(a_restarted_agent_costs_one_trial),
         cmocka_unit_test(a_restarted_simulator_starts_over),
     };

@@ -1,4 +1,5 @@
 /* The simulator's side alone, answered by hand: what it refuses and what it ignores. */
+#include "grrl/base/settling.h"
 #include "harness.hpp"
 
 using namespace harness;
@@ -250,10 +251,10 @@ void no_model_no_push(void **)
     Puppet puppet;
     for (int i = 0; i < 100; i++)
         puppet.send(puppet.answer());
-    assert_int_equal(puppet.frames, 10);
+    assert_int_equal(puppet.frames, GRRL_SETTLING_FRAMES);
     puppet.decide(1);
     puppet.send(puppet.push(-0.1f, 0.1f));
-    assert_int_equal(puppet.frames, 10);
+    assert_int_equal(puppet.frames, GRRL_SETTLING_FRAMES);
 }
 
 } // namespace

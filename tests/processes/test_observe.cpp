@@ -1,6 +1,7 @@
 /* Observers, and an agent with a tracker and a robot that know nothing of trials. */
 #include <algorithm>
 
+#include "grrl/base/settling.h"
 #include "harness.hpp"
 
 using namespace harness;
@@ -14,17 +15,15 @@ public:
     explicit Listener(bool observe) : lcm_(lcm_create("memq://"))
     {
         agent_ = std::make_unique<grrl_agent>();
-        cases_.resize(capacity);
-        states_.resize(capacity);
-        experiences_.resize(capacity);
         grrl_agent_config config{};
         grrl_learner_config_default(&config.learner);
         config.learner.seed = 1;
         config.session_id = agent_session;
         config.observe = observe;
         config.now_us = agent_clock;
-        config.memory = {cases_.data(),       capacity, states_.data(), capacity,
-                         experiences_.data(), capacity};
+        assert_int_equal(grrl_policy_make(&grrl_policy_learn, policy_.bytes, sizeof policy_.bytes,
+                                          capacity, nullptr, &config.policy),
+                         GRRL_OK);
         assert_int_equal(grrl_agent_init(agent_.get(), &config, lcm_), GRRL_OK);
     }
     ~Listener()
@@ -61,9 +60,7 @@ public:
 private:
     lcm_t *lcm_;
     std::unique_ptr<grrl_agent> agent_;
-    std::vector<grrl_case> cases_;
-    std::vector<grrl_experience_state> states_;
-    std::vector<grrl_experience> experiences_;
+    POLICY_MEMORY(capacity) policy_;
 };
 
 struct Recording {
@@ -212,7 +209,7 @@ private:
         push.end_m = {static_cast<double>(c.end[0]), static_cast<double>(c.end[1])};
         push.travel_m = static_cast<double>(c.travel);
         pushes_++;
-        assert_true(rest_frames_ >= 10); /* enough to average */
+        assert_true(rest_frames_ >= GRRL_SETTLING_FRAMES); /* enough to average */
         rest_frames_ = 0;
         moving_ = world_.begin_push(push).empty();
         report(moving_ ? GRRL_PUSH_STATUS_T_MOVING : GRRL_PUSH_STATUS_T_REFUSED,
@@ -259,7 +256,7 @@ void a_tracker_and_a_robot_are_enough(void **)
         listener.handle_all();
     }
     assert_int_equal(plant.pushes(), 12);
-    assert_true(listener.agent().learner.cases.n > 0);
+    assert_true(grrl_learner_usage(&listener.agent().learner).n > 0);
     assert_int_equal(listener.agent().counts.lost, 0);
     /* it found joints, so the frames reached perception as frames of pushes */
     assert_true(grrl_perception_model(&listener.agent().learner.perception)->n_joints >= 1);
@@ -275,7 +272,7 @@ void an_agent_gives_way_when_its_robot_moves_for_another(void **)
         listener.handle_all();
     }
     assert_false(grrl_agent_gave_way(&listener.agent()));
-    uint32_t cases = listener.agent().learner.cases.n;
+    uint32_t cases = grrl_learner_usage(&listener.agent().learner).n;
     plant.obey_rival();
     for (int i = 0; i < 200; i++) {
         plant.frame();
@@ -283,7 +280,7 @@ void an_agent_gives_way_when_its_robot_moves_for_another(void **)
     }
     assert_true(grrl_agent_gave_way(&listener.agent()));
     assert_int_equal(plant.pushes(), 2);
-    assert_int_equal(listener.agent().learner.cases.n, cases);
+    assert_int_equal(grrl_learner_usage(&listener.agent().learner).n, cases);
 }
 
 } // namespace

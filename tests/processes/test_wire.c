@@ -125,7 +125,7 @@ static void fill_small(void)
     push_status = (grrl_push_status_t){.session_id = 42, .agent_session_id = 43, .cmd_seq = 1};
     push_status.tool[0] = 0.25f;
     trial = (grrl_trial_t){.session_id = 42, .trial_id = 1, .revision = 1, .judged_cmd_seq = -1};
-    decision = (grrl_decision_t){.session_id = 43, .trial_id = 1, .cmd_seq = 1, .experience = -1};
+    decision = (grrl_decision_t){.session_id = 43, .trial_id = 1, .cmd_seq = 1, .source_index = -1};
     decision.phi = 0.5f;
     agent_status = (grrl_agent_status_t){.session_id = 43, .received = INT64_MAX};
 }

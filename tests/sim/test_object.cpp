@@ -61,6 +61,21 @@ void sizes_set_lengths_but_not_the_verdict(void **)
     assert_true(Supervisor(must_build("RR").truth).judge(object.truth).correct);
 }
 
+void links_have_any_names(void **)
+{
+    ObjectSpec named = must_build("D(lb, R(L(l, blade1), L(s, Tip)))");
+    assert_string_equal(named.links[0].name.c_str(), "blade1");
+    assert_string_equal(named.links[1].name.c_str(), "Tip");
+    ObjectSpec numbered = must_build("D(lb, R(L(l, l1), L(s, l2)))");
+    assert_true(grrl_graph_equal(&named.truth, &numbered.truth, GRRL_ALL_PROPERTIES));
+    assert_int_equal(must_build("L(foo)").links.size(), 1);
+    assert_int_equal(must_build("l12").links.size(), 1);
+    std::string all = "R(hub_1";
+    for (int i = 2; i <= GRRL_MAX_LINKS; i++)
+        all += ", arm_" + std::to_string(i);
+    assert_int_equal(must_build(all + ")").links.size(), GRRL_MAX_LINKS);
+}
+
 void branches_do_not_overlap(void **)
 {
     for (const char *text : {"R(l1,l2,l3,l4)", "R(l1,l2,l3,l4,l5,l6,l7,l8,l9)",
@@ -107,7 +122,11 @@ void bad_descriptions_say_what_would_be_right(void **)
         {"", "an empty chain"},
         {too_long.c_str(), " (GRRL_MAX_LINKS)"},
         {"R(l1, l2", "1:9: expected"},
-        {"foo", "is no chain such as RPR, no file"},
+        {"foo", "'foo' is no chain such as RPR, no file such as scissors.grrl, and as a term: a "
+                "single link of this name is written L(foo)"},
+        {"l1x", "is written L(l1x)"},
+        {"foo bar", "and as a term: 1:5: expected '&' or the end of the text, found 'bar'"},
+        {"R(tip, R(blade, tip))", "link tip is joined twice to blade"},
         {"no-such-file.grrl", "no-such-file.grrl: cannot be read"},
         {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
         {"R(l1, R(l3, R(l2, l1)))", "closes but has no mobility: the revolute joint between"},
@@ -144,12 +163,16 @@ void shipped_files_are_objects(void **)
     const std::string folder = GRRL_OBJECTS;
     ObjectSpec scissors = must_build(folder + "/scissors.grrl");
     assert_int_equal(scissors.links.size(), 2);
+    assert_string_equal(scissors.links[1].name.c_str(), "blade2");
     assert_true(std::abs(scissors.links[0].half_length_m - 0.10) < 1e-12);
     assert_true(std::abs(scissors.joints[0].upper - radians(75.0)) < 1e-12);
     assert_true(std::abs(scissors.joints[0].anchor_a_m.x + 0.01) < 1e-12);
     ObjectSpec toy = must_build(folder + "/wooden-toy.grrl");
     assert_true(Supervisor(must_build("PRR").truth).judge(toy.truth).correct);
-    assert_int_equal(must_build(folder + "/garden-shears.grrl").joints.size(), 1);
+    ObjectSpec shears = must_build(folder + "/garden-shears.grrl");
+    assert_int_equal(shears.joints.size(), 1);
+    assert_int_equal(shears.links[1].size, GRRL_PROPERTY_LARGE);
+    assert_true(std::abs(shears.links[1].half_length_m - 0.15) < 1e-12);
 }
 
 void bad_files_are_told_by_line_and_column(void **)
@@ -165,6 +188,9 @@ void bad_files_are_told_by_line_and_column(void **)
         {"term R(l1, l2)\nterm R(l1, l2)\n", "f:2:1: a second term"},
         {"term R(l1, l2)\n link l3 0.1 0.1 0.1\n",
          "f:2:7: the term has no link 'l3'; it has l1, l2"},
+        {"term R(blade1, L(s, Tip))\n link tip 0.1 0.1 0.1\n",
+         "f:2:7: the term has no link 'tip'; it has blade1, Tip"},
+        {"term R(blade1, blade-2)\n", "f:1:21: expected ',', ')' or '&'"},
         {"term R(l1, l2)\nlink l1 0.1 x 0.1\n", "f:2:13: the width 'x' must be a number from"},
         {"term R(l1, l2)\nlink l1 nan 0.1 0.1\n", "f:2:9: the length 'nan' must be a number"},
         {"term R(l1, l2)\nlink l1 0.1 0.1\n", "f:2:16: expected: link NAME"},
@@ -190,6 +216,7 @@ int main()
         cmocka_unit_test(chain_has_links_in_a_row),
         cmocka_unit_test(term_and_chain_are_the_same_structure),
         cmocka_unit_test(sizes_set_lengths_but_not_the_verdict),
+        cmocka_unit_test(links_have_any_names),
         cmocka_unit_test(branches_do_not_overlap),
         cmocka_unit_test(loops_close_at_random_configurations),
         cmocka_unit_test(bad_descriptions_say_what_would_be_right),

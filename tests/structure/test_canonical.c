@@ -1,3 +1,4 @@
+/* Canonical forms against brute force, relabelled and symmetric graphs. */
 #include "grrl/structure/canonical.h"
 #include "support.h"
 
@@ -239,6 +240,98 @@ static void test_alike_to_refinement(void **state)
     }
 }
 
+/* What is symmetric is searched once: the refinements that some structures take, and no more, are
+ * few next to the 5! to 10! orders of their links. With fewer the form is undecided. */
+static void test_few_refinements(void **state)
+{
+    (void)state;
+    struct grrl_graph loop = links(5);
+    struct grrl_graph complete = links(5);
+    struct grrl_graph bipartite = links(8);
+    struct grrl_graph cube = links(8);
+    struct grrl_graph petersen = links(10);
+    struct grrl_graph star = links(10);
+    for (int i = 1; i < 10; i++)
+        join(&star, 0, i);
+    for (int i = 0; i < 5; i++) {
+        join(&loop, i, (i + 1) % 5);
+        join(&petersen, i, (i + 1) % 5);
+        join(&petersen, 5 + i, 5 + (i + 2) % 5);
+        join(&petersen, i, 5 + i);
+        for (int j = 0; j < i; j++)
+            join(&complete, i, j);
+    }
+    for (int i = 0; i < 16; i++)
+        join(&bipartite, i / 4, 4 + i % 4);
+    for (int i = 0; i < 8; i++)
+        for (int bit = 1; bit < 8; bit *= 2)
+            if ((i & bit) == 0)
+                join(&cube, i, i | bit);
+    const struct {
+        const struct grrl_graph *graph;
+        uint32_t refinements;
+    } cases[] = {{&loop, 6},  {&complete, 15}, {&bipartite, 34},
+                 {&cube, 10}, {&petersen, 15}, {&star, 9}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct grrl_canonical canonical;
+        uint32_t budget = 0;
+        while (grrl_canonical_of(cases[i].graph, GRRL_ALL_PROPERTIES, budget, &canonical) ==
+               GRRL_ERR_UNDECIDED)
+            budget++;
+        assert_in_range(budget, 3, cases[i].refinements);
+        struct grrl_canonical plenty = canonical_of(cases[i].graph, GRRL_ALL_PROPERTIES);
+        assert_true(same_canonical(&canonical, &plenty));
+    }
+}
+
+static void fill_stack(uint8_t value)
+{
+    volatile uint8_t bytes[16384];
+    for (size_t i = 0; i < sizeof bytes; i++)
+        bytes[i] = value;
+}
+
+/* Three joints at each of ten links, at random: refinement sees no difference between links, and
+ * most have no symmetry. */
+static struct grrl_graph random_cubic(struct grrl_random *random)
+{
+    struct grrl_graph graph = links(10);
+    uint8_t ends[30];
+    uint8_t order[30];
+    do {
+        graph = links(10);
+        support_shuffle(random, order, 30);
+        for (int i = 0; i < 30; i++)
+            ends[i] = order[i] / 3;
+        for (int i = 0; i < 30; i += 2) {
+            enum grrl_status status =
+                grrl_graph_add_joint(&graph, ends[i], ends[i + 1], GRRL_REVOLUTE);
+            (void)status; /* a pair that is joined, or one link twice: then once more */
+        }
+    } while (grrl_graph_joint_count(&graph) != 15);
+    return graph;
+}
+
+/* Whatever lies in memory before a search, links that only look alike are all tried. */
+static void test_only_alike(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("only alike");
+    void (*volatile fill)(uint8_t) = fill_stack; /* a call that no compiler leaves out */
+    for (int i = 0; i < 300; i++) {
+        struct grrl_graph graph = random_cubic(&random);
+        uint8_t order[GRRL_MAX_LINKS];
+        struct grrl_graph other = support_relabel(&random, &graph, order);
+        for (unsigned value = 0; value < 256; value += 255) {
+            fill((uint8_t)value);
+            struct grrl_canonical a = canonical_of(&graph, GRRL_ALL_PROPERTIES);
+            fill((uint8_t)value);
+            struct grrl_canonical b = canonical_of(&other, GRRL_ALL_PROPERTIES);
+            assert_true(same_canonical(&a, &b));
+        }
+    }
+}
+
 static void test_hash(void **state)
 {
     (void)state;
@@ -252,6 +345,32 @@ static void test_hash(void **state)
     /* FNV-1a of n, then label and rows of each link, least significant bytes first */
     assert_int_equal(canonical.hash, 0x81c25775u);
     assert_int_not_equal(canonical_of(&graph, GRRL_NO_PROPERTIES).hash, canonical.hash);
+}
+
+/* Components stand side by side by size, then by their labels, then by their joints: stores of
+ * experiences keep this order. */
+static void test_order_of_components(void **state)
+{
+    (void)state;
+    struct grrl_graph graph = links(9);
+    graph.label[0] = 2;
+    graph.label[1] = 1;
+    join(&graph, 2, 3);
+    join(&graph, 4, 5);
+    join(&graph, 6, 7);
+    graph.label[2] = 1;
+    graph.label[3] = 2;
+    graph.label[4] = 1;
+    graph.label[5] = 1;
+    assert_int_equal(grrl_graph_add_joint(&graph, 7, 8, GRRL_PRISMATIC), GRRL_OK);
+    struct grrl_canonical canonical = canonical_of(&graph, GRRL_ALL_PROPERTIES);
+    const uint8_t expected[6] = {1, 0, 4, 5, 2, 3};
+    for (int i = 0; i < 6; i++)
+        assert_true(canonical.graph.label[i] == graph.label[expected[i]]);
+    assert_int_equal(canonical.order[0], 1);
+    assert_int_equal(canonical.order[1], 0);
+    assert_int_equal(canonical.order[4], 2);
+    assert_int_equal(canonical.order[5], 3);
 }
 
 static void test_budget(void **state)
@@ -276,13 +395,11 @@ static void test_budget(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_all_of_four_links),
-        cmocka_unit_test(test_against_brute_force),
-        cmocka_unit_test(test_large_relabelled),
-        cmocka_unit_test(test_symmetric),
-        cmocka_unit_test(test_alike_to_refinement),
-        cmocka_unit_test(test_hash),
-        cmocka_unit_test(test_budget),
+        cmocka_unit_test(test_all_of_four_links),   cmocka_unit_test(test_against_brute_force),
+        cmocka_unit_test(test_large_relabelled),    cmocka_unit_test(test_symmetric),
+        cmocka_unit_test(test_alike_to_refinement), cmocka_unit_test(test_few_refinements),
+        cmocka_unit_test(test_only_alike),          cmocka_unit_test(test_hash),
+        cmocka_unit_test(test_order_of_components), cmocka_unit_test(test_budget),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

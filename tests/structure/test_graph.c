@@ -1,4 +1,7 @@
+/* Terms to graphs and back, refusals, and full stores. */
 #include "support.h"
+
+#include "grrl/structure/canonical.h"
 
 enum { N_NODES = 12 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS };
 
@@ -75,6 +78,9 @@ static void test_equivalent_terms(void **state)
         {"R(l1, L(s, red, l2)) & L(l, l1)", "R(L(l, l1), l2) & L(s, red, l2) & l2"},
         {"L(_, red, l1) & lb", "D(lb, L(_, red, l1))"},
         {"R(lb, l1)", "D(lb, R(l1, lb))"},
+        {"D(lb, R(L(s, l), R(s, P)))", "R(l, s) & R(s, P) & L(s, l)"},
+        {"R(R, L(l, R1)) & P(R1, lb)", "P(lb, R(L(l, R1), R))"},
+        {"R(L(s, l1), l2) & L(s, l1)", "R(L(s, l1), l2)"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -118,7 +124,11 @@ static void test_rejected_terms(void **state)
     } cases[] = {
         {"A(l1, 45)", "an action is no structure"},
         {"L(v1, l1)", "link l1 has a variable for a property"},
+        {"L(v0, l1)", "link l1 has a variable for a property"},
         {"R(l1, l1)", "link l1 is joined to itself"},
+        {"R(blade1, tip, blade1)", "link blade1 is joined to itself"},
+        {"R(blade1, R(tip, blade1))", "link blade1 is joined twice to tip"},
+        {"R(L(s, tip), l2) & L(l, tip)", "link tip is given two sets of properties"},
         {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
         {"R(l1, R(l1, l2))", "link l1 is joined to itself"},
         {"R(l1, l2) & P(l2, l1)", "link l2 is joined twice to l1"},
@@ -179,6 +189,122 @@ static void test_full(void **state)
     assert_non_null(strstr(error.message, "one more than a structure can have"));
 }
 
+/* One link too many because a joint asks for the background, at either end, and one joint too many:
+ * the message names the link. */
+static void test_full_by_joints(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct structure s;
+    struct grrl_term_error error;
+    for (int end = 0; end < 2; end++) {
+        grrl_term_release(store, 1);
+        grrl_term parts[GRRL_MAX_LINKS + 1];
+        for (uint16_t i = 0; i < GRRL_MAX_LINKS; i++) {
+            struct grrl_name name = {GRRL_NAME_FEATURES, i};
+            assert_int_equal(grrl_term_make_link(store, name, NULL, 0, &parts[i]), GRRL_OK);
+        }
+        parts[GRRL_MAX_LINKS] = support_parse(store, end == 0 ? "R(lb, f0)" : "R(f0, lb)");
+        grrl_term all;
+        assert_int_equal(grrl_term_make(store, GRRL_TERM_AND, parts, GRRL_MAX_LINKS + 1, &all),
+                         GRRL_OK);
+        assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
+                         GRRL_ERR_FULL);
+        assert_string_equal(error.message, "link lb is one more than a structure can have");
+    }
+
+    grrl_term_release(store, 1);
+    grrl_term joints[GRRL_MAX_JOINTS + 1];
+    uint16_t n = 0;
+    for (uint16_t b = 0; b < GRRL_MAX_LINKS; b++) {
+        for (uint16_t a = 0; a < b && n <= GRRL_MAX_JOINTS; a++) {
+            grrl_term ends[2];
+            struct grrl_name name_a = {GRRL_NAME_LINK, a};
+            struct grrl_name name_b = {GRRL_NAME_LINK, b};
+            assert_int_equal(grrl_term_make_link(store, name_a, NULL, 0, &ends[0]), GRRL_OK);
+            assert_int_equal(grrl_term_make_link(store, name_b, NULL, 0, &ends[1]), GRRL_OK);
+            assert_int_equal(grrl_term_make(store, GRRL_TERM_PRISMATIC, ends, 2, &joints[n++]),
+                             GRRL_OK);
+        }
+    }
+    grrl_term all;
+    assert_int_equal(grrl_term_make(store, GRRL_TERM_AND, joints, n, &all), GRRL_OK);
+    assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
+                     GRRL_ERR_FULL);
+    assert_non_null(strstr(error.message, "has one joint more than a structure can hold"));
+    assert_int_equal(grrl_graph_joint_count(&s.graph), GRRL_MAX_JOINTS);
+}
+
+/* A graph as a term in a store that is too small by any number of nodes: it stays as it was. */
+static void test_small_stores(void **state)
+{
+    static const char *const cases[] = {
+        "R(l1, l2) & P(l3, l4) & R(l1, l3)",
+        "R(L(s, l1), L(l, l2)) & R(L(s, l3), l4) & P(l2, l5) & R(l4, l2)",
+        "R(l1, l2) & R(l2, l3) & R(l3, l4) & R(l4, l2)",
+        "R(l1, l2, l3, l4)",
+        "R(l1, l2) & R(l2, l3) & R(l3, l1) & P(l4, l2) & P(l4, l3)",
+        "D(l1, L(s, l2), R(l3, l4))",
+        "R(lb, l1, l2)",
+    };
+    struct grrl_term_store *store = store_of(state);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        grrl_term_release(store, 1);
+        struct structure s = read_structure(store, support_parse(store, cases[i]));
+        uint16_t wanted = 0;
+        for (uint16_t capacity = 2; wanted == 0; capacity++) {
+            struct grrl_term_node nodes[64];
+            struct grrl_term_store small;
+            assert_true(capacity <= 64);
+            grrl_term_store_init(&small, nodes, capacity);
+            grrl_term term;
+            enum grrl_status status =
+                grrl_graph_to_term(&small, &s.graph, s.names, s.edges, s.n_edges, true, &term);
+            if (status == GRRL_OK) {
+                wanted = capacity;
+                struct structure again = read_structure(&small, term);
+                assert_same(&s, &again);
+            } else {
+                assert_int_equal(status, GRRL_ERR_FULL);
+                assert_int_equal(grrl_term_mark(&small), 1);
+                assert_int_equal(small.high_water, capacity);
+            }
+        }
+        assert_true(wanted > s.graph.n);
+    }
+}
+
+/* A chain or loop becomes one nested relation, as deep as it has joints. */
+static void test_chains_and_loops_nest(void **state)
+{
+    (void)state;
+    static struct grrl_term_node nodes[1024];
+    struct grrl_term_store store;
+    for (int closed = 0; closed < 2; closed++) {
+        for (uint8_t n = 3; n <= GRRL_MAX_LINKS; n++) {
+            grrl_term_store_init(&store, nodes, 1024);
+            struct structure s = {.n_edges = 0};
+            for (uint8_t i = 0; i < n; i++) {
+                assert_int_equal(grrl_graph_add_link(&s.graph, 0, NULL), GRRL_OK);
+                s.names[i] = (struct grrl_name){GRRL_NAME_LINK, i};
+            }
+            for (uint8_t i = 0; i < n - !closed; i++) {
+                uint8_t next = (uint8_t)((i + 1) % n);
+                s.edges[s.n_edges++] = (struct grrl_edge){i, next, GRRL_REVOLUTE};
+                assert_int_equal(grrl_graph_add_joint(&s.graph, i, next, GRRL_REVOLUTE), GRRL_OK);
+            }
+            grrl_term term;
+            assert_int_equal(
+                grrl_graph_to_term(&store, &s.graph, s.names, s.edges, s.n_edges, true, &term),
+                GRRL_OK);
+            struct structure again = read_structure(&store, term);
+            assert_same(&s, &again);
+            unsigned depth = grrl_term_node_at(&store, term)->depth;
+            unsigned joints = s.n_edges + 1u; /* and the D around them */
+            assert_int_equal(depth, joints < GRRL_MAX_TERM_DEPTH ? joints : GRRL_MAX_TERM_DEPTH);
+        }
+    }
+}
+
 static void test_joints(void **state)
 {
     (void)state;
@@ -191,6 +317,9 @@ static void test_joints(void **state)
     assert_int_equal(grrl_graph_add_joint(&graph, 1, 3, GRRL_REVOLUTE), GRRL_ERR_STRUCTURE);
     assert_int_equal(grrl_graph_add_joint(&graph, 2, 2, GRRL_REVOLUTE), GRRL_ERR_STRUCTURE);
     assert_int_equal(grrl_graph_add_joint(&graph, 2, 5, GRRL_REVOLUTE), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_graph_add_joint(&graph, 5, 2, GRRL_REVOLUTE), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_graph_add_joint(&graph, 0, 2, (enum grrl_joint_type)GRRL_JOINT_TYPES),
+                     GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_graph_joint(&graph, 1, 0), GRRL_REVOLUTE);
     assert_int_equal(grrl_graph_joint(&graph, 1, 3), GRRL_PRISMATIC);
     assert_int_equal(grrl_graph_joint(&graph, 0, 3), GRRL_NO_JOINT);
@@ -266,6 +395,39 @@ static void test_order_of_discovery(void **state)
     }
 }
 
+/* Names that are identifiers keep their vertices, and neither they nor how many there are change
+ * the labels and the canonical form. */
+static void test_identifiers(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct structure plain =
+        read_structure(store, support_parse(store, "R(l1, P(L(s, wet, l2), L(red, l3)))"));
+    grrl_term_store_init(store, ((struct fixture *)*state)->nodes, N_NODES);
+    struct structure named =
+        read_structure(store, support_parse(store, "R(wet, P(L(s, wet, red), L(red, Tip)))"));
+    assert_true(grrl_graph_equal(&plain.graph, &named.graph, GRRL_ALL_PROPERTIES));
+    struct grrl_canonical a;
+    struct grrl_canonical b;
+    assert_int_equal(grrl_canonical_of(&plain.graph, GRRL_ALL_PROPERTIES, 10000, &a), GRRL_OK);
+    assert_int_equal(grrl_canonical_of(&named.graph, GRRL_ALL_PROPERTIES, 10000, &b), GRRL_OK);
+    assert_int_equal(a.hash, b.hash);
+    static const char *const words[] = {"wet", "red", "Tip"};
+    for (uint8_t i = 0; i < 3; i++) {
+        char text[GRRL_NAME_BYTES];
+        assert_int_equal(named.names[i].kind, GRRL_NAME_SYMBOL);
+        assert_string_equal(grrl_term_name_text(store, named.names[i], text), words[i]);
+    }
+    grrl_term term;
+    assert_int_equal(grrl_graph_to_term(store, &named.graph, named.names, named.edges,
+                                        named.n_edges, true, &term),
+                     GRRL_OK);
+    support_assert_prints(store, term, "D(lb, R(wet, P(L(s, wet, red), L(red, Tip))))");
+    named.names[2].number = 4; /* not known to the store */
+    assert_int_equal(grrl_graph_to_term(store, &named.graph, named.names, named.edges,
+                                        named.n_edges, true, &term),
+                     GRRL_ERR_ARGUMENT);
+}
+
 /* Without an order of discovery a chain or loop becomes one nested relation. */
 static void test_own_order(void **state)
 {
@@ -275,6 +437,9 @@ static void test_own_order(void **state)
         {"R(l1, l2) & R(l2, l3) & R(l3, l4) & R(l4, l2)", "R(l2, R(l4, R(l3, R(l2, l1))))"},
         {"R(l1, l2, l3, l4)", "R(l3, R(l1, l2)) & R(l1, l4)"},
         {"R(l1, l2, P(l3, l4)) & D(l5, l6)", "D(P(l4, R(l3, R(l1, l2))), l5, l6)"},
+        /* a link has its properties once */
+        {"R(L(s, l1), L(l, l2)) & R(l2, l3) & R(l3, l1)", "R(l1, R(l3, R(L(l, l2), L(s, l1))))"},
+        {"R(L(s, l1), l2, l3, l4)", "R(l3, R(L(s, l1), l2)) & R(l1, l4)"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -303,6 +468,13 @@ static void test_to_term_checks(void **state)
     bad.edges[0].type ^= 1u;
     assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, bad.edges, 2, true, &term),
                      GRRL_ERR_ARGUMENT);
+    for (int end = 0; end < 2; end++) {
+        bad = s;
+        *(end == 0 ? &bad.edges[1].a : &bad.edges[1].b) = bad.graph.n;
+        assert_int_equal(
+            grrl_graph_to_term(store, &bad.graph, bad.names, bad.edges, 2, true, &term),
+            GRRL_ERR_ARGUMENT);
+    }
     bad = s;
     bad.names[1] = bad.names[0];
     assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
@@ -310,6 +482,28 @@ static void test_to_term_checks(void **state)
     bad = s;
     bad.names[0] = (struct grrl_name){GRRL_NAME_BACKGROUND, 0};
     assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    bad.graph.label[0] = GRRL_LABEL_BACKGROUND;
+    bad.names[0] = (struct grrl_name){GRRL_NAME_BACKGROUND, 0};
+    assert_int_equal(grrl_graph_to_term(store, &bad.graph, bad.names, NULL, 0, true, &term),
+                     GRRL_OK);
+    grrl_term_release(store, 1);
+    struct grrl_graph alone; /* the background without a joint */
+    grrl_graph_clear(&alone);
+    assert_int_equal(grrl_graph_add_link(&alone, GRRL_LABEL_BACKGROUND, NULL), GRRL_OK);
+    assert_int_equal(grrl_graph_to_term(store, &alone, bad.names, NULL, 0, true, &term),
+                     GRRL_ERR_ARGUMENT);
+    struct grrl_graph crowded; /* more joints than grrl_graph_add_joint allows */
+    grrl_graph_clear(&crowded);
+    struct grrl_name names[GRRL_MAX_LINKS];
+    for (uint8_t i = 0; i < GRRL_MAX_LINKS; i++) {
+        assert_int_equal(grrl_graph_add_link(&crowded, 0, NULL), GRRL_OK);
+        names[i] = (struct grrl_name){GRRL_NAME_LINK, i};
+    }
+    for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
+        crowded.joined[GRRL_REVOLUTE][i] =
+            (uint32_t)((UINT64_C(1) << GRRL_MAX_LINKS) - 1u) & ~(UINT32_C(1) << i);
+    assert_int_equal(grrl_graph_to_term(store, &crowded, names, NULL, 0, true, &term),
                      GRRL_ERR_ARGUMENT);
     bad = s;
     bad.graph.label[0] = 100;
@@ -329,6 +523,18 @@ static void test_to_term_checks(void **state)
     }
 }
 
+/* A name for link k that no other k has: f3 or Link_3. */
+static struct grrl_name random_name(struct grrl_term_store *store, struct grrl_random *random,
+                                    uint8_t k)
+{
+    struct grrl_name name = {GRRL_NAME_FEATURES, k};
+    char word[GRRL_SYMBOL_BYTES];
+    int length = snprintf(word, sizeof word, "Link_%u", (unsigned)k);
+    if (grrl_random_below(random, 2) == 0)
+        assert_int_equal(grrl_term_intern_name(store, word, (size_t)length, &name), GRRL_OK);
+    return name;
+}
+
 /* Every structure survives being written as a term and read again, and its first joint is the most
  * deeply nested one as long as the term has no conjunction. */
 static void test_random_round_trips(void **state)
@@ -343,7 +549,7 @@ static void test_random_round_trips(void **state)
         s.graph = support_graph(&random, n, 1 + grrl_random_below(&random, 8),
                                 n > 1 ? grrl_random_below(&random, GRRL_MAX_JOINTS - n) : 0, 2);
         for (uint8_t k = 0; k < n; k++)
-            s.names[k] = (struct grrl_name){GRRL_NAME_FEATURES, (uint16_t)(100 + k)};
+            s.names[k] = random_name(store, &random, k);
         for (uint8_t b = 0; b < n; b++)
             for (uint8_t a = 0; a < b; a++)
                 if (grrl_graph_joint(&s.graph, a, b) != GRRL_NO_JOINT)
@@ -420,8 +626,12 @@ int main(void)
         cmocka_unit_test_setup(test_contents, setup),
         cmocka_unit_test_setup(test_rejected_terms, setup),
         cmocka_unit_test_setup(test_full, setup),
+        cmocka_unit_test_setup(test_full_by_joints, setup),
+        cmocka_unit_test_setup(test_small_stores, setup),
+        cmocka_unit_test_setup(test_chains_and_loops_nest, setup),
         cmocka_unit_test_setup(test_joints, setup),
         cmocka_unit_test_setup(test_order_of_discovery, setup),
+        cmocka_unit_test_setup(test_identifiers, setup),
         cmocka_unit_test_setup(test_own_order, setup),
         cmocka_unit_test_setup(test_to_term_checks, setup),
         cmocka_unit_test_setup(test_random_round_trips, setup),

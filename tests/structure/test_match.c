@@ -1,3 +1,4 @@
+/* Matches against brute force, relabelling, budgets, fixed pairs, orbits. */
 #include "grrl/structure/match.h"
 #include "support.h"
 
@@ -283,6 +284,19 @@ static void test_orbits(void **state)
     assert_int_equal(orbit[1], 1);
     assert_int_equal(grrl_match_orbits(&chain, GRRL_ALL_PROPERTIES, 2, orbit), GRRL_OK);
     assert_int_equal(orbit[1], 0);
+
+    struct grrl_graph loops; /* of three and of four links: one colour, two orbits */
+    grrl_graph_clear(&loops);
+    for (uint8_t i = 0; i < 7; i++)
+        assert_int_equal(grrl_graph_add_link(&loops, 0, NULL), GRRL_OK);
+    for (uint8_t i = 0; i < 7; i++)
+        assert_int_equal(grrl_graph_add_joint(&loops, i,
+                                              (uint8_t)(i < 3 ? (i + 1) % 3 : 3 + (i - 2) % 4),
+                                              GRRL_REVOLUTE),
+                         GRRL_OK);
+    const uint8_t expected[7] = {0, 0, 0, 3, 3, 3, 3};
+    assert_int_equal(grrl_match_orbits(&loops, GRRL_ALL_PROPERTIES, BIG_BUDGET, orbit), GRRL_OK);
+    assert_memory_equal(orbit, expected, sizeof expected);
 }
 
 int main(void)

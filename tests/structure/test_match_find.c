@@ -151,6 +151,16 @@ static void test_trees(void **state)
     uint32_t images;
     grrl_match_plan_of(&plan, &loop, GRRL_ALL_PROPERTIES);
     assert_int_equal(grrl_match_tree(&plan, &plan, 0, &images, NULL), GRRL_ERR_UNDECIDED);
+    struct grrl_graph chain = support_graph(&random, 2, 8, 0, 0);
+    struct grrl_graph nothing = support_graph(&random, 0, 0, 0, 0);
+    struct grrl_match_plan of_chain;
+    struct grrl_match_plan of_nothing;
+    grrl_match_plan_of(&of_chain, &chain, GRRL_ALL_PROPERTIES);
+    grrl_match_plan_of(&of_nothing, &nothing, GRRL_ALL_PROPERTIES);
+    assert_int_equal(grrl_match_tree(&of_chain, &plan, 0, &images, NULL), GRRL_ERR_UNDECIDED);
+    assert_int_equal(grrl_match_tree(&of_nothing, &plan, 0, &images, NULL), GRRL_ERR_UNDECIDED);
+    assert_int_equal(grrl_match_tree(&of_chain, &of_chain, 0, &images, NULL), GRRL_OK);
+    assert_int_equal(images, 3);
 }
 
 /* Legs around a hub; joint `prismatic` of the first leg is of the other type. */
@@ -187,6 +197,94 @@ static void test_near_misses(void **state)
     assert_int_equal(grrl_match_find(mono, &same, &b, GRRL_ALL_PROPERTIES, 1000, map), GRRL_OK);
     assert_true(keeps_joints(&same, &b, GRRL_ALL_PROPERTIES, map));
     assert_int_equal(grrl_match_find(iso, &a, &a, GRRL_ALL_PROPERTIES, 1000, map), GRRL_OK);
+}
+
+/* A ring of twice n links, each joined to the next and to the one opposite (a Moebius ladder), or
+ * the same as two rings of n that rungs join (a prism): colour refinement sees no difference. */
+static struct grrl_graph ladder(uint8_t n, bool is_prism)
+{
+    struct grrl_graph graph;
+    grrl_graph_clear(&graph);
+    for (uint8_t i = 0; i < 2 * n; i++)
+        assert_int_equal(grrl_graph_add_link(&graph, 0, NULL), GRRL_OK);
+    for (uint8_t i = 0; i < 2 * n; i++) {
+        uint8_t next = (uint8_t)((i + 1) % (2 * n));
+        if (is_prism)
+            next = (uint8_t)(i / n * n + (i + 1) % n);
+        assert_int_equal(grrl_graph_add_joint(&graph, i, next, GRRL_REVOLUTE), GRRL_OK);
+        if (i < n)
+            assert_int_equal(grrl_graph_add_joint(&graph, i, (uint8_t)(i + n), GRRL_REVOLUTE),
+                             GRRL_OK);
+    }
+    return graph;
+}
+
+/* Beyond a short search, isomorphism is decided by canonical forms; a part with loops is not
+ * decided without the budget for a long one. */
+static void test_loops_alike(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("loops alike");
+    unsigned n_undecided = 0;
+    for (uint8_t n = 3; 2 * n <= GRRL_MAX_LINKS && 3 * n <= GRRL_MAX_JOINTS; n++) {
+        struct grrl_graph moebius = ladder(n, false);
+        struct grrl_graph prism = ladder(n, true);
+        for (int i = 0; i < 20; i++) {
+            uint8_t order[GRRL_MAX_LINKS];
+            uint8_t map[GRRL_MAX_LINKS];
+            struct grrl_graph other = support_relabel(&random, &prism, order);
+            const enum grrl_match_kind iso = GRRL_MATCH_ISOMORPHISM;
+            assert_int_equal(grrl_match_find(iso, &moebius, &other, GRRL_ALL_PROPERTIES, 1000, map),
+                             GRRL_ERR_NONE);
+            assert_int_equal(grrl_match_find(iso, &prism, &other, GRRL_ALL_PROPERTIES, 1000, map),
+                             GRRL_OK);
+            assert_true(keeps_joints(&prism, &other, GRRL_ALL_PROPERTIES, map));
+            struct grrl_graph part = random_part(&random, &moebius, (uint8_t)(2 * n - 1));
+            const enum grrl_match_kind mono = GRRL_MATCH_MONOMORPHISM;
+            enum grrl_status expected = search_for(mono, &part, &other, GRRL_ALL_PROPERTIES);
+            enum grrl_status status =
+                grrl_match_find(mono, &part, &other, GRRL_ALL_PROPERTIES, 10, map);
+            assert_true(status == expected || status == GRRL_ERR_UNDECIDED);
+            n_undecided += status == GRRL_ERR_UNDECIDED;
+            assert_int_equal(
+                grrl_match_find(mono, &part, &other, GRRL_ALL_PROPERTIES, BIG_BUDGET, map),
+                expected);
+            assert_true(expected != GRRL_OK ||
+                        keeps_joints(&part, &other, GRRL_ALL_PROPERTIES, map));
+        }
+    }
+    assert_true(n_undecided > 10);
+}
+
+/* A part with loops takes as many steps as the search for it, and with one fewer is undecided. */
+static void test_budget_is_exact(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("budget is exact");
+    struct grrl_graph prism = ladder(5, true);
+    unsigned n_long = 0;
+    for (int i = 0; i < 300; i++) {
+        struct grrl_graph moebius = ladder(5, false);
+        struct grrl_graph part = random_part(&random, &moebius, 10);
+        struct grrl_match_plan plans[2];
+        struct grrl_match match;
+        uint8_t map[GRRL_MAX_LINKS];
+        const enum grrl_match_kind mono = GRRL_MATCH_MONOMORPHISM;
+        grrl_match_plan_of(&plans[0], &part, GRRL_ALL_PROPERTIES);
+        grrl_match_plan_of(&plans[1], &prism, GRRL_ALL_PROPERTIES);
+        grrl_match_begin_planned(&match, mono, &plans[0], &plans[1], BIG_BUDGET);
+        enum grrl_status expected = grrl_match_next(&match, map);
+        uint32_t steps = BIG_BUDGET - match.budget;
+        if (steps == 0 || match.kind != mono ||
+            grrl_match_tree(&plans[0], &plans[1], 0, &(uint32_t){0}, NULL) == GRRL_OK)
+            continue;
+        assert_int_equal(grrl_match_find_planned(mono, &plans[0], &plans[1], steps, map), expected);
+        assert_int_equal(grrl_match_find_planned(mono, &plans[0], &plans[1], steps - 1, map),
+                         GRRL_ERR_UNDECIDED);
+        n_long += steps > 8 * GRRL_MAX_LINKS; /* more than the first, short search takes */
+    }
+    print_message("%u long searches\n", n_long);
+    assert_true(n_long > 10);
 }
 
 /* A budget of nothing leaves the answers that need no search. */
@@ -253,6 +351,8 @@ int main(void)
         cmocka_unit_test(test_every_way_gives_the_same),
         cmocka_unit_test(test_trees),
         cmocka_unit_test(test_near_misses),
+        cmocka_unit_test(test_loops_alike),
+        cmocka_unit_test(test_budget_is_exact),
         cmocka_unit_test(test_without_a_budget),
         cmocka_unit_test(test_a_part_stays_a_part),
     };

@@ -1,3 +1,4 @@
+/* Terms: parse and print, refusals at each byte, unification. */
 #include "support.h"
 
 enum { N_NODES = 400 + 4 * GRRL_MAX_TERM_DEPTH };
@@ -35,6 +36,11 @@ static void test_parse_print(void **state)
         {"R(R(L(s, v1), L(s, v2)), L(s, v3))", "R(R(L(s, v1), L(s, v2)), L(s, v3))"},
         {"R(L(l, f3), R(L(s, f2), L(l, f1)))", "R(L(l, f3), R(L(s, f2), L(l, f1)))"},
         {"A(v3, 45\xc2\xb0)", "A(v3, 45)"},
+        {"A(l1, 0)", "A(l1, 0)"},
+        {"A(l1, 000)", "A(l1, 0)"},
+        {"A(l1, 90)", "A(l1, 90)"},
+        {"A(l1, 180)", "A(l1, 180)"},
+        {"A(l1, 225)", "A(l1, 225)"},
         {"A( L( s , red, f3 ) ,270 \xc2\xb0 ) ", "A(L(s, red, f3), 270)"},
         {"\n\tR \r( l1\v,\f l2 , l3 )\n", "R(l1, l2, l3)"},
         {"l1 & R(l1&l2,l3 & P(l4,l5)&l6)", "l1 & R(l1 & l2, l3 & P(l4, l5) & l6)"},
@@ -45,13 +51,23 @@ static void test_parse_print(void **state)
         {"L(s, _, _, f1)", "L(s, f1)"},
         {"L(a2_Bc, lbx, ff1, fx, f65535)", "L(a2_Bc, lbx, ff1, fx, f65535)"},
         {"lb", "lb"},
+        {"R(blade1, blade2)", "R(blade1, blade2)"},
+        {"D(lb, P(Left, R(L(s, mid_3), right)))", "D(lb, P(Left, R(L(s, mid_3), right)))"},
+        {"L(s, small)", "L(s, small)"},
+        {"L(s, l)", "L(s, l)"},
+        {"L(s, s) & s & L(s)", "L(s, s) & s & s"},
+        {"R(s, l)", "R(s, l)"},
+        {"R (R, P) & L & L(L) & A", "R(R, P) & L & L & A"},
+        {"A(A, 45)", "A(A, 45)"},
+        {"D(D\n, L(v1, _, v))", "D(D, L(v1, v))"},
+        {"f & v & l1a & f_1 & lb_ & LB & l1_ & L1", "f & v & l1a & f_1 & lb_ & LB & l1_ & L1"},
+        {"R(abcdefghijklmno, L(abcdefghijklmno, x))", "R(abcdefghijklmno, L(abcdefghijklmno, x))"},
     };
     struct grrl_term_store *store = store_of(state);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        uint16_t mark = grrl_term_mark(store);
+        grrl_term_store_init(store, ((struct fixture *)*state)->nodes, N_NODES);
         support_assert_prints(store, support_parse(store, cases[i][0]), cases[i][1]);
         support_assert_prints(store, support_parse(store, cases[i][1]), cases[i][1]);
-        grrl_term_release(store, mark);
     }
 }
 
@@ -69,10 +85,14 @@ struct malformed {
 
 static const struct malformed malformed[] = {
     {" ", 0, 1, 1, 2, SYNTAX, "expected a link or one of R, P, D, A, found the end of the text"},
-    {"s", 0, 0, 1, 1, SYNTAX, "expected a link or one of R, P, D, A, found 's'"},
-    {"X(l1, l2)", 0, 0, 1, 1, SYNTAX, "found 'X'"},
+    {"9a", 0, 0, 1, 1, SYNTAX, "expected a link or one of R, P, D, A, found '9a'"},
+    {"_", 0, 0, 1, 1, SYNTAX, "expected a link or one of R, P, D, A, found '_'"},
+    {"R(_a, l2)", 0, 2, 1, 3, SYNTAX, "expected a link or one of R, P, D, A, found '_a'"},
+    {"X(l1, l2)", 0, 0, 1, 1, SYNTAX, "expected R, P, D, L or A before '(', found 'X'"},
     {"RR(l1, l2)", 0, 0, 1, 1, SYNTAX, "found 'RR'"},
-    {"R l1", 0, 2, 1, 3, SYNTAX, "expected '(' after the letter of a relation, found 'l1'"},
+    {"R(blade1 (l1), l2)", 0, 2, 1, 3, SYNTAX, "before '(', found 'blade1'"},
+    {"l1 & l2(s)", 0, 5, 1, 6, SYNTAX, "before '(', found 'l2'"},
+    {"R l1", 0, 2, 1, 3, SYNTAX, "expected '&' or the end of the text, found 'l1'"},
     {"R(l1)", 0, 4, 1, 5, SYNTAX, "expected ',' and a further argument"},
     {"R()", 0, 2, 1, 3, SYNTAX, "expected a link or one of R, P, D, A, found ')'"},
     {"R(l1, )", 0, 6, 1, 7, SYNTAX, "found ')'"},
@@ -81,11 +101,16 @@ static const struct malformed malformed[] = {
     {"R(l1, l2))", 0, 9, 1, 10, SYNTAX, "expected '&' or the end of the text, found ')'"},
     {"l1 &", 0, 4, 1, 5, SYNTAX, "found the end of the text"},
     {"l1, l2", 0, 2, 1, 3, SYNTAX, "expected '&' or the end of the text, found ','"},
-    {"L s", 0, 2, 1, 3, SYNTAX, "expected '(' after L, found 's'"},
+    {"A s", 0, 2, 1, 3, SYNTAX, "expected '&' or the end of the text, found 's'"},
     {"L()", 0, 2, 1, 3, SYNTAX, "expected a property or the name of a link, found ')'"},
-    {"L(s, x y)", 0, 7, 1, 8, SYNTAX, "expected ',' or ')' after a property, found 'y'"},
-    {"L(s, f1 y)", 0, 8, 1, 9, SYNTAX, "expected ')' after the name of a link, found 'y'"},
-    {"L(s)", 0, 2, 1, 3, SYNTAX, "expected a name such as f1, v1 or l1 at the end of a link"},
+    {"L(s, x y)", 0, 7, 1, 8, SYNTAX,
+     "expected ',' after a property or ')' after a name, found 'y'"},
+    {"L(s, f1 y)", 0, 8, 1, 9, SYNTAX, "',' after a property or ')' after a name, found 'y'"},
+    {"L(_)", 0, 2, 1, 3, SYNTAX,
+     "expected a name such as f1, v1, l1 or blade1 at the end of a link, found '_'"},
+    {"L(s, 9)", 0, 5, 1, 6, SYNTAX, "at the end of a link, found '9'"},
+    {"L(s, x(y))", 0, 6, 1, 7, SYNTAX, "found '('"},
+    {"L(abcdefghijklmnop)", 0, 2, 1, 3, SYNTAX, "too long for a name"},
     {"L(f1, s, f2)", 0, 2, 1, 3, SYNTAX, "expected a property (the name stands last"},
     {"L(lb, f2)", 0, 2, 1, 3, SYNTAX, "expected a property (the name stands last"},
     {"L(S, f2)", 0, 2, 1, 3, SYNTAX, "a property, which begins with a small letter, found 'S'"},
@@ -100,7 +125,18 @@ static const struct malformed malformed[] = {
     {"A(f1, 4294967341)", 0, 6, 1, 7, SYNTAX, "found '4294967341'"},
     {"A(f1, 45x)", 0, 6, 1, 7, SYNTAX, "found '45x'"},
     {"A(f1, )", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found ')'"},
+    {"A(f1, 0x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found '0x'"},
+    {"A(f1, x)", 0, 6, 1, 7, SYNTAX, "a direction: 0, 45, 90, 180, 225 or 270, found 'x'"},
+    {"A(f1, 45\xc2\xb1)", 0, 8, 1, 9, SYNTAX, "expected ')' after the direction"},
+    {"A(f1, /)", 0, 6, 1, 7, SYNTAX, "found '/'"},
+    {"R(l1, l2{)", 0, 8, 1, 9, SYNTAX, "found '{'"},
+    {"R(l1, \x01)", 0, 6, 1, 7, SYNTAX, "found the byte 0x01"},
+    {"R(l1, \x1f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x1f"},
+    {"R(l1, \x7f)", 0, 6, 1, 7, SYNTAX, "found the byte 0x7f"},
+    {"R(l1, ~)", 0, 6, 1, 7, SYNTAX, "found '~'"},
+    {"A(f1, 45\xc2\xb0", 0, 10, 1, 10, SYNTAX, "of an action, found the end of the text"},
     {"A(f1)", 0, 4, 1, 5, SYNTAX, "expected ',' after the link of an action, found ')'"},
+    {"A(X(f1), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A, found 'X'"},
     {"A(R(f1, f2), 45)", 0, 2, 1, 3, SYNTAX, "expected a link as the first argument of A"},
     {"A(f1, 45\xc2\xb0 7)", 0, 11, 1, 11, SYNTAX, "expected ')' after the direction"},
     {"A(f1, 45\xc2", 0, 8, 1, 9, SYNTAX,
@@ -109,11 +145,14 @@ static const struct malformed malformed[] = {
     {"A(f1, 45) & l1", 0, 10, 1, 11, SYNTAX, "expected the end of the text after an action"},
     {"l1 & A(f1, 45)", 0, 5, 1, 6, SYNTAX, "an action is no part of another term"},
     {"R(A(f1, 45), l1)", 0, 2, 1, 3, SYNTAX, "an action is no part of another term"},
-    {"R(l1, l\xc3\xa4)", 0, 6, 1, 7, SYNTAX, "found 'l'"},
+    {"R(l1, l\xc3\xa4)", 0, 7, 1, 8, SYNTAX, "found the byte 0xc3"},
     {"R(l1\xc3\xa4)", 0, 4, 1, 5, SYNTAX, "found the byte 0xc3"},
     {"l1\0 ", 4, 2, 1, 3, SYNTAX, "expected '&' or the end of the text, found a zero byte"},
     {"\0", 1, 0, 1, 1, SYNTAX, "found a zero byte"},
-    {"aVeryLongWordThatIsNoTermAtAll", 0, 0, 1, 1, SYNTAX, "found 'aVeryLongWordThatIsNoTer..'"},
+    {"aVeryLongWordThatIsNoTermAtAll", 0, 0, 1, 1, SYNTAX,
+     "the word is too long for a name, which has at most 15 characters"},
+    {"R(l1 aVeryLongWordThatIsNoTermAtAll)", 0, 5, 1, 6, SYNTAX,
+     "found 'aVeryLongWordThatIsNoTer..'"},
 };
 
 static void test_malformed(void **state)
@@ -135,16 +174,20 @@ static void test_malformed(void **state)
         assert_int_equal(term, 77);
         assert_int_equal(store->used, before.used);
         assert_int_equal(store->n_symbols, before.n_symbols);
+        assert_int_equal(store->n_names, before.n_names);
         assert_int_equal(grrl_term_parse(store, c->text, length, &term, NULL), status);
     }
 }
 
-/* Every proper prefix of a term without an '&' or a number at its end is no term. */
+/* Every proper prefix of a term without an '&' or a number at its end is no term, but for its first
+ * letter, which alone is a link's name. */
 static void test_every_prefix(void **state)
 {
     static const char text[] = "D(lb, R(L(s, f4), R(L(s, f3), P(L(s, f1), L(s, f2)))))";
     struct grrl_term_store *store = store_of(state);
     for (size_t length = 0; length + 1 < sizeof text; length++) {
+        if (length == 1)
+            continue;
         grrl_term term;
         struct grrl_term_error error;
         assert_int_equal(grrl_term_parse(store, text, length, &term, &error), GRRL_ERR_SYNTAX);
@@ -199,7 +242,10 @@ static void test_capacity(void **state)
         assert_int_equal(status, capacity < 8 ? GRRL_ERR_FULL : GRRL_OK);
         if (status != GRRL_OK) {
             assert_int_equal(grrl_term_mark(&store), 1);
-            assert_non_null(strstr(error.message, "the term store is full"));
+            char expected[64];
+            (void)snprintf(expected, sizeof expected, "the term store is full: it holds %u nodes",
+                           capacity - 1u);
+            assert_string_equal(error.message, expected);
             assert_int_equal(store.high_water, capacity);
         }
     }
@@ -213,6 +259,10 @@ static void test_capacity(void **state)
     assert_int_equal(grrl_term_parse(&store, "l1", 2, &term, NULL), GRRL_ERR_FULL);
     grrl_term made;
     assert_int_equal(grrl_term_make_action(&store, term, 0, &made), GRRL_ERR_FULL);
+    grrl_term_store_init(&store, nodes, 2);
+    assert_int_equal(grrl_term_parse(&store, "A(l1, 0)", 8, &term, &error), GRRL_ERR_FULL);
+    assert_int_equal(error.offset, 0);
+    assert_int_equal(grrl_term_mark(&store), 1);
 }
 
 static void test_symbols(void **state)
@@ -227,7 +277,15 @@ static void test_symbols(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_int_equal(grrl_term_intern(store, bad[i], strlen(bad[i]), &property),
                          GRRL_ERR_SYNTAX);
-    for (int i = 3; i <= GRRL_MAX_SYMBOLS; i++) {
+    static const char broken[] = "L(gone, f1"; /* takes its new symbol back */
+    static const char whole[] = "L(gone, f1)";
+    grrl_term link;
+    assert_int_equal(grrl_term_parse(store, broken, sizeof broken - 1, &link, NULL),
+                     GRRL_ERR_SYNTAX);
+    assert_int_equal(store->n_symbols, 2);
+    support_assert_prints(store, support_parse(store, whole), whole);
+    assert_int_equal(store->n_symbols, 3);
+    for (int i = 4; i <= GRRL_MAX_SYMBOLS; i++) {
         char name[GRRL_SYMBOL_BYTES];
         int length = snprintf(name, sizeof name, "atom_%d", i);
         assert_int_equal(grrl_term_intern(store, name, (size_t)length, &property), GRRL_OK);
@@ -235,14 +293,80 @@ static void test_symbols(void **state)
         assert_string_equal(grrl_term_symbol(store, property), name);
     }
     assert_int_equal(grrl_term_intern(store, "more", 4, &property), GRRL_ERR_FULL);
-    assert_int_equal(grrl_term_intern(store, "atom_3", 6, &property), GRRL_OK);
-    assert_int_equal(property, 3);
+    assert_int_equal(grrl_term_intern(store, "atom", 4, &property), GRRL_ERR_FULL);
+    assert_int_equal(grrl_term_intern(store, "atom_4", 6, &property), GRRL_OK);
+    assert_int_equal(property, 4);
     grrl_term term;
     struct grrl_term_error error;
     assert_int_equal(grrl_term_parse(store, "L(s,more,f1)", 12, &term, &error), GRRL_ERR_FULL);
     assert_int_equal(error.offset, 4);
     assert_null(grrl_term_symbol(store, 0));
     assert_null(grrl_term_symbol(store, 128));
+}
+
+/* The table of names: apart from that of properties, filled to the last, unchanged by a failure. */
+static void test_names(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_name name = {GRRL_NAME_NONE, 77};
+    static const char *const bad[] = {"",   "1",  "_",  "_a",  "f1",      "l12",
+                                      "v0", "lb", "a ", "a-b", "\xc3\xa4"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_int_equal(grrl_term_intern_name(store, bad[i], strlen(bad[i]), &name),
+                         GRRL_ERR_SYNTAX);
+    assert_int_equal(grrl_term_intern_name(store, "abcdefghijklmnop", 16, &name), GRRL_ERR_SYNTAX);
+    assert_int_equal(name.number, 77);
+    for (uint16_t i = 1; i <= GRRL_MAX_NAMES; i++) {
+        char word[GRRL_SYMBOL_BYTES];
+        char text[GRRL_NAME_BYTES];
+        int length = snprintf(word, sizeof word, "Blade_%u", (unsigned)i);
+        assert_int_equal(grrl_term_intern_name(store, word, (size_t)length, &name), GRRL_OK);
+        assert_int_equal(name.kind, GRRL_NAME_SYMBOL);
+        assert_int_equal(name.number, i);
+        assert_string_equal(grrl_term_name_text(store, name, text), word);
+    }
+    assert_int_equal(store->n_symbols, 2);
+    assert_int_equal(grrl_term_intern_name(store, "Blade", 5, &name), GRRL_ERR_FULL);
+    assert_int_equal(grrl_term_intern_name(store, "Blade_2", 7, &name), GRRL_OK);
+    assert_int_equal(name.number, 2);
+    support_assert_prints(store, support_parse(store, "R(Blade_2, L(s, red, Blade_3))"),
+                          "R(Blade_2, L(s, red, Blade_3))");
+    grrl_term term;
+    struct grrl_term_error error;
+    assert_int_equal(grrl_term_parse(store, "R(l1, L(s, blue, more))", 23, &term, &error),
+                     GRRL_ERR_FULL);
+    assert_int_equal(error.offset, 17);
+    char expected[120];
+    (void)snprintf(expected, sizeof expected, "the term store is full: it holds %d identifiers",
+                   GRRL_MAX_NAMES);
+    assert_non_null(strstr(error.message, expected));
+    assert_int_equal(store->n_symbols, 3);
+    assert_int_equal(store->n_names, GRRL_MAX_NAMES);
+
+    /* a text that fails at its end takes its names back */
+    grrl_term_store_init(store, ((struct fixture *)*state)->nodes, N_NODES);
+    assert_int_equal(grrl_term_parse(store, "R(a, L(red, b)", 14, &term, NULL), GRRL_ERR_SYNTAX);
+    assert_int_equal(store->n_names, 0);
+}
+
+static void test_name_text(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    (void)support_parse(store, "abcdefghijklmno");
+    static const struct {
+        struct grrl_name name;
+        const char *text;
+    } cases[] = {
+        {{GRRL_NAME_LINK, 0}, "l0"},      {{GRRL_NAME_FEATURES, 65535}, "f65535"},
+        {{GRRL_NAME_VARIABLE, 3}, "v3"},  {{GRRL_NAME_BACKGROUND, 0}, "lb"},
+        {{GRRL_NAME_SYMBOL, 0}, "?"},     {{GRRL_NAME_SYMBOL, 1}, "abcdefghijklmno"},
+        {{GRRL_NAME_SYMBOL, 2}, "?"},     {{GRRL_NAME_NONE, 1}, "?"},
+        {{GRRL_NAME_SYMBOL + 1, 1}, "?"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[GRRL_NAME_BYTES];
+        assert_string_equal(grrl_term_name_text(store, cases[i].name, text), cases[i].text);
+    }
 }
 
 static void test_make_checks(void **state)
@@ -267,6 +391,30 @@ static void test_make_checks(void **state)
     struct grrl_name nobody = {GRRL_NAME_NONE, 0};
     assert_int_equal(grrl_term_make_link(store, name, unknown, 1, &made), GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_term_make_link(store, nobody, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    (void)support_parse(store, "blade1");
+    static const struct grrl_name wrong[] = {{GRRL_NAME_SYMBOL, 0},
+                                             {GRRL_NAME_SYMBOL, 2},
+                                             {GRRL_NAME_SYMBOL + 1, 1},
+                                             {GRRL_NAME_BACKGROUND, 1}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        assert_int_equal(grrl_term_make_link(store, wrong[i], NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    struct grrl_name beyond = {GRRL_NAME_BACKGROUND + 1, 0};
+    struct grrl_name numbered = {GRRL_NAME_BACKGROUND, 1};
+    const grrl_property many[GRRL_MAX_PROPERTIES + 1] = {0};
+    assert_int_equal(grrl_term_make_link(store, beyond, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_link(store, numbered, NULL, 0, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_link(store, name, many, GRRL_MAX_PROPERTIES + 1, &made),
+                     GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make(store, GRRL_TERM_ACTION, outside, 2, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(
+        grrl_term_make(store, (enum grrl_term_kind)(GRRL_TERM_AND + 1), outside, 2, &made),
+        GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_make_action(store, 0, 0, &made), GRRL_ERR_ARGUMENT);
+    struct grrl_substitution none = {.n = 0};
+    assert_int_equal(grrl_term_substitute(store, 0, &none, &made), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, 0, link, 0, &none), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, link, 0, 0, &none), GRRL_ERR_ARGUMENT);
+    assert_int_equal(grrl_term_unify(store, link, N_NODES - 1, 0, &none), GRRL_ERR_ARGUMENT);
     assert_int_equal(made, 0);
 }
 
@@ -344,6 +492,9 @@ static void test_unify(void **state)
         {"R(v1, v2)", "R(v2, v1)", 0, GRRL_OK, "R(v2, v2)"},
         {"R(f1, v2)", "P(f1, v2)", 0, GRRL_ERR_NONE, NULL},
         {"R(f1, f2)", "R(f1, f2, f3)", 0, GRRL_ERR_NONE, NULL},
+        {"D(R(f1, f2), f4)", "D(R(f1, f2, f3), f4)", 0, GRRL_ERR_NONE, NULL},
+        {"L(v1, f1)", "L(v2, f1)", 0, GRRL_OK, "L(v2, f1)"},
+        {"L(s, _, f1)", "L(_, v1, f1)", 0, GRRL_ERR_NONE, NULL},
         {"R(R(f1, f2), f3)", "R(f1, R(f2, f3))", 0, GRRL_ERR_NONE, NULL},
         {"R(f1, f2) & f3", "R(f1, v9) & v8", 0, GRRL_OK, "R(f1, f2) & f3"},
         {"L(v1, v1)", "L(s, f1)", 0, GRRL_OK, "L(s, f1)"},
@@ -354,6 +505,16 @@ static void test_unify(void **state)
         {"L(s, red, f1)", "L(l, red, v1)", 1, GRRL_OK, "L(s, red, f1)"},
         {"L(s, red, f1)", "L(s, blue, v1)", 1, GRRL_ERR_NONE, NULL},
         {"L(s, red, f1)", "L(s, blue, v1)", 2, GRRL_OK, "L(s, red, f1)"},
+        {"first", "l1", 0, GRRL_ERR_NONE, NULL}, /* both are number 1 */
+        {"blade1", "blade1", 0, GRRL_OK, "blade1"},
+        {"blade1", "blade2", 0, GRRL_ERR_NONE, NULL},
+        {"blade", "blade1", 0, GRRL_ERR_NONE, NULL},
+        {"blade1", "Blade1", 0, GRRL_ERR_NONE, NULL},
+        {"R(v1, v2)", "R(blade1, L(s, tip))", 1, GRRL_OK, "R(blade1, tip)"},
+        {"R(v1, v1)", "R(blade1, blade2)", 0, GRRL_ERR_NONE, NULL},
+        {"R(v1, P(v1, v3))", "R(v3, P(tip, tip))", 0, GRRL_OK, "R(tip, P(tip, tip))"},
+        {"L(v1, v1)", "L(s, tip)", 0, GRRL_OK, "L(s, tip)"},
+        {"A(v1, 45)", "A(R, 45)", 0, GRRL_OK, "A(R, 45)"},
         {"A(v1, 45)", "A(f1, 45)", 0, GRRL_OK, "A(f1, 45)"},
         {"A(v1, 45)", "A(f1, 90)", 0, GRRL_ERR_NONE, NULL},
     };
@@ -401,14 +562,75 @@ static void test_unify_full(void **state)
     assert_int_equal(binding.n, 2 * GRRL_MAX_LINKS);
 }
 
+/* A name that could be taken for something else. */
+static struct grrl_name random_symbol(struct grrl_term_store *store, struct grrl_random *random)
+{
+    static const char *const words[] = {"R", "P", "D", "L",  "A",  "s",   "l",      "f",
+                                        "v", "S", "B", "l_", "f_", "lbb", "v1_a_B", "blade1"};
+    const char *word = words[grrl_random_below(random, sizeof words / sizeof words[0])];
+    struct grrl_name name;
+    assert_int_equal(grrl_term_intern_name(store, word, strlen(word), &name), GRRL_OK);
+    return name;
+}
+
+/* The same for properties, whose variables are others than those of names. */
+static void test_unify_full_of_properties(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_substitution binding = {.n = 0};
+    grrl_term small = support_parse(store, "L(s, f1)");
+    for (uint16_t i = 0; i <= 2 * GRRL_MAX_LINKS; i++) {
+        grrl_term variable;
+        const struct grrl_name name = {GRRL_NAME_FEATURES, 1};
+        const grrl_property property = (grrl_property)(128 + i);
+        assert_int_equal(grrl_term_make_link(store, name, &property, 1, &variable), GRRL_OK);
+        assert_int_equal(grrl_term_unify(store, variable, small, 0, &binding),
+                         i < 2 * GRRL_MAX_LINKS ? GRRL_OK : GRRL_ERR_FULL);
+    }
+    assert_int_equal(binding.n, 2 * GRRL_MAX_LINKS);
+    grrl_term copy;
+    assert_int_equal(
+        grrl_term_substitute(store, support_parse(store, "L(v0, v0)"), &binding, &copy), GRRL_OK);
+    support_assert_prints(store, copy, "L(s, v0)");
+}
+
+/* Bindings made by hand may lead in a circle; what follows them ends all the same. */
+static void test_bindings_in_a_circle(void **state)
+{
+    struct grrl_term_store *store = store_of(state);
+    struct grrl_substitution circle = {.n = 4};
+    for (uint16_t i = 0; i < 4; i++) {
+        circle.binding[i].variable = i % 2;
+        circle.binding[i].is_property = i >= 2;
+        circle.binding[i].property = (grrl_property)(128 + 1 - i % 2);
+        circle.binding[i].name = (struct grrl_name){GRRL_NAME_VARIABLE, (uint16_t)(1 - i % 2)};
+    }
+    grrl_term copy;
+    assert_int_equal(grrl_term_substitute(store, support_parse(store, "L(v0, v1)"), &circle, &copy),
+                     GRRL_OK);
+    support_assert_prints(store, copy, "L(v0, v1)");
+}
+
+/* What no function makes is printed as a question mark. */
+static void test_unknown_prints(void **state)
+{
+    struct fixture *fixture = *state;
+    grrl_term term = support_parse(&fixture->store, "L(s, f1)");
+    fixture->nodes[term].properties[0] = 127;
+    fixture->nodes[term].name.kind = GRRL_NAME_NONE;
+    support_assert_prints(&fixture->store, term, "L(?, ?)");
+}
+
 /* A random term built bottom up from a pool of terms. */
 static grrl_term random_term(struct grrl_term_store *store, struct grrl_random *random)
 {
     grrl_term pool[40];
     uint16_t n = (uint16_t)(1 + grrl_random_below(random, 40));
     for (uint16_t i = 0; i < n; i++) {
-        struct grrl_name name = {(uint16_t)(1 + grrl_random_below(random, 4)), 0};
-        if (name.kind != GRRL_NAME_BACKGROUND)
+        struct grrl_name name = {(uint16_t)(1 + grrl_random_below(random, 5)), 0};
+        if (name.kind == GRRL_NAME_SYMBOL)
+            name = random_symbol(store, random);
+        else if (name.kind != GRRL_NAME_BACKGROUND)
             name.number = (uint16_t)grrl_random_below(random, 65536);
         grrl_property properties[GRRL_MAX_PROPERTIES];
         uint8_t n_properties = (uint8_t)grrl_random_below(random, GRRL_MAX_PROPERTIES + 1);
@@ -500,12 +722,17 @@ int main(void)
         cmocka_unit_test_setup(test_depth, setup),
         cmocka_unit_test_setup(test_capacity, setup),
         cmocka_unit_test_setup(test_symbols, setup),
+        cmocka_unit_test_setup(test_names, setup),
+        cmocka_unit_test_setup(test_name_text, setup),
         cmocka_unit_test_setup(test_make_checks, setup),
         cmocka_unit_test_setup(test_conjunctions_merge, setup),
         cmocka_unit_test_setup(test_print_cut, setup),
         cmocka_unit_test_setup(test_paper_unification, setup),
         cmocka_unit_test_setup(test_unify, setup),
         cmocka_unit_test_setup(test_unify_full, setup),
+        cmocka_unit_test_setup(test_unify_full_of_properties, setup),
+        cmocka_unit_test_setup(test_bindings_in_a_circle, setup),
+        cmocka_unit_test_setup(test_unknown_prints, setup),
         cmocka_unit_test_setup(test_random_round_trips, setup),
         cmocka_unit_test_setup(test_random_damage, setup),
     };

@@ -29,7 +29,7 @@ refuses 2 "no input"
 refuses 2 "one input only" --camera 1 film.avi
 refuses 2 "must be a number from 0.01 to 100" --scale 0 film.avi
 refuses 2 "must be PX,PY=X,Y" --points "1,2 3,4" film.avi
-refuses 2 "four points are needed" --points "1,2=0,0 3,4=1,1" film.avi
+refuses 2 "must be four points or more, not 2" --points "1,2=0,0 3,4=1,1" film.avi
 refuses 2 "one way from pixels to metres" --scale 1 --calibration x film.avi
 refuses 2 "points on LCM are in metres" --lcm
 refuses 2 "as in 9x6x25" --calibrate 9x6 film.avi

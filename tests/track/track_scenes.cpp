@@ -15,14 +15,11 @@
 #include <opencv2/core/utility.hpp>
 
 #include "eye_bench.hpp"
-#include "structure.hpp"
-#include "supervisor.hpp"
-
-extern "C" {
 #include "grrl/learner/grounding.h"
 #include "grrl/learner/relational_state.h"
 #include "grrl/perception/perception.h"
-}
+#include "structure.hpp"
+#include "supervisor.hpp"
 
 using namespace grrl_sim;
 using eye_bench::EyeBench;
@@ -194,7 +191,8 @@ int main(int argc, char **argv)
     CameraLook look;
     std::string problem = argc > 5 ? parse_camera_look(argv[5], look) : "";
     if (!object || !problem.empty()) {
-        (void)std::fprintf(stderr, "track_scenes: %s%s\n", object.error.c_str(), problem.c_str());
+        (void)std::fprintf(stderr, "track_scenes: %s%s%s\n", object.error.c_str(),
+                           problem.empty() ? "" : "LOOK must be ", problem.c_str());
         return 2;
     }
     uint64_t seed = std::strtoull(argv[2], nullptr, 10);

@@ -75,7 +75,8 @@ int main(int argc, char **argv)
     CameraLook look;
     std::string problem = argc > 5 ? parse_camera_look(argv[5], look) : "";
     if (!object || !problem.empty()) {
-        (void)std::fprintf(stderr, "track_video: %s%s\n", object.error.c_str(), problem.c_str());
+        (void)std::fprintf(stderr, "track_video: %s%s%s\n", object.error.c_str(),
+                           problem.empty() ? "" : "LOOK must be ", problem.c_str());
         return 2;
     }
     uint64_t seed = std::strtoull(argv[2], nullptr, 10);

@@ -1,3 +1,4 @@
+/* Elementary functions from correctly rounded operations, and poses. */
 #include "grrl/base/geometry.h"
 
 #include <float.h>
@@ -183,58 +184,6 @@ float grrl_sqrt(float x)
 bool grrl_is_finite(float x)
 {
     return (bits_of(x) & UINT32_C(0x7f800000)) != UINT32_C(0x7f800000);
-}
-
-struct grrl_vec2 grrl_vec2_add(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return (struct grrl_vec2){a.x + b.x, a.y + b.y};
-}
-
-struct grrl_vec2 grrl_vec2_sub(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return (struct grrl_vec2){a.x - b.x, a.y - b.y};
-}
-
-struct grrl_vec2 grrl_vec2_scale(struct grrl_vec2 a, float factor)
-{
-    return (struct grrl_vec2){a.x * factor, a.y * factor};
-}
-
-float grrl_vec2_dot(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return a.x * b.x + a.y * b.y;
-}
-
-float grrl_vec2_cross(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return a.x * b.y - a.y * b.x;
-}
-
-float grrl_vec2_length(struct grrl_vec2 a)
-{
-    return grrl_sqrt(grrl_vec2_dot(a, a));
-}
-
-struct grrl_vec2 grrl_rotate(struct grrl_pose pose, struct grrl_vec2 local)
-{
-    return (struct grrl_vec2){pose.c * local.x - pose.s * local.y,
-                              pose.s * local.x + pose.c * local.y};
-}
-
-struct grrl_vec2 grrl_unrotate(struct grrl_pose pose, struct grrl_vec2 world)
-{
-    return (struct grrl_vec2){pose.c * world.x + pose.s * world.y,
-                              pose.c * world.y - pose.s * world.x};
-}
-
-struct grrl_vec2 grrl_transform(struct grrl_pose pose, struct grrl_vec2 local)
-{
-    return grrl_vec2_add(grrl_rotate(pose, local), pose.p);
-}
-
-struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world)
-{
-    return grrl_unrotate(pose, grrl_vec2_sub(world, pose.p));
 }
 
 float grrl_wrap_rad(float angle_rad)

@@ -1,3 +1,4 @@
+/* PCG32, and unbiased numbers below a limit. */
 #include "grrl/base/random.h"
 
 void grrl_random_init(struct grrl_random *random, uint64_t seed, uint64_t stream)

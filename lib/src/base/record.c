@@ -1,3 +1,4 @@
+/* Little-endian numbers, and records with a running CRC-32. */
 #include "base/record.h"
 
 #include <stdbool.h>

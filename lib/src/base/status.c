@@ -1,3 +1,4 @@
+/* The texts of the statuses. */
 #include "grrl/base/status.h"
 
 const char *grrl_status_text(enum grrl_status status)
@@ -29,6 +30,8 @@ const char *grrl_status_text(enum grrl_status status)
         return "a damaged file";
     case GRRL_ERR_ORDER:
         return "a call out of order";
+    case GRRL_ERR_POLICY:
+        return "a file of another policy";
     }
     return "an unknown status";
 }

@@ -1,3 +1,4 @@
+/* grounding.c: directions relative to a link, and the line of a push. */
 #include "grrl/learner/grounding.h"
 
 #include "grrl/structure/term.h"

@@ -1,16 +1,9 @@
+/* learner.c: the order of calls, rewards, and the policy between perception and grounding. */
 #include "grrl/learner/learner.h"
 
-#include <assert.h>
 #include <string.h>
 
-/* An agent of 100 experiences fits a quarter of a megabyte (checked for the default capacities). */
-#if GRRL_MAX_LINKS <= 16 && GRRL_MAX_FEATURES <= 192 && GRRL_MAX_KEYFRAMES <= 48
-_Static_assert(sizeof(struct grrl_learner) +
-                       100 * (sizeof(struct grrl_case) + sizeof(struct grrl_experience_state) +
-                              sizeof(struct grrl_experience)) <=
-                   256 * 1024,
-               "an agent of 100 experiences in 256 KiB");
-#endif
+#include "base/range.h"
 
 enum phase {
     PHASE_IDLE,   /* no trial */
@@ -25,37 +18,22 @@ void grrl_learner_config_default(struct grrl_learner_config *config)
     memset(config, 0, sizeof *config);
     grrl_perception_config_default(&config->perception);
     grrl_grounding_config_default(&config->grounding);
-    grrl_policy_config_default(&config->policy);
     config->large_m = 0.15f;
+    config->trial_reward = 1.0f;
     config->seed = 1;
-}
-
-static bool is_enough(const struct grrl_learner_memory *memory, enum grrl_policy_kind kind)
-{
-    switch (kind) {
-    case GRRL_POLICY_LEARN:
-        return memory->cases_capacity > 0;
-    case GRRL_POLICY_PAPER:
-        return memory->states_capacity > 0 && memory->experiences_capacity > 0;
-    default:
-        return true;
-    }
 }
 
 enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    const struct grrl_learner_config *config,
-                                   const struct grrl_learner_memory *memory)
+                                   struct grrl_policy policy)
 {
-    bool is_size = grrl_is_finite(config->large_m) && config->large_m > 0.0f;
-    if (!is_size || !is_enough(memory, config->policy.kind) ||
+    if (!(grrl_is_finite(config->large_m) && config->large_m > 0.0f) ||
+        !grrl_is_within(config->trial_reward, 0.0f, GRRL_MOST_TRIAL_REWARD) ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
-        grrl_policy_config_check(&config->policy, NULL) != GRRL_OK ||
         grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK)
         return GRRL_ERR_ARGUMENT;
     learner->config = *config;
-    grrl_experience_init(&learner->store, memory->states, memory->states_capacity,
-                         memory->experiences, memory->experiences_capacity);
-    grrl_cases_init(&learner->cases, memory->cases, memory->cases_capacity);
+    learner->policy = policy;
     learner->trial = 0;
     grrl_learner_abandon_trial(learner);
     return GRRL_OK;
@@ -66,13 +44,10 @@ void grrl_learner_abandon_trial(struct grrl_learner *learner)
     grrl_perception_reset(&learner->perception);
     grrl_random_init(&learner->random, learner->config.seed, learner->trial);
     grrl_graph_clear(&learner->state);
-    grrl_graph_clear(&learner->acted_on);
-    memset(&learner->recall, 0, sizeof learner->recall);
-    memset(&learner->attempts, 0, sizeof learner->attempts);
-    memset(&learner->contexts, 0, sizeof learner->contexts);
-    grrl_cases_begin_trial(&learner->cases, &learner->config.policy.cases);
+    if (learner->policy.type->begin_trial != NULL)
+        learner->policy.type->begin_trial(learner->policy.self);
     memset(&learner->last_choice, 0, sizeof learner->last_choice);
-    learner->pushes = 0;
+    learner->last_number = 0;
     learner->most_links = 0;
     learner->most_joints = 0;
     learner->phase = PHASE_IDLE;
@@ -92,8 +67,7 @@ void grrl_learner_observe(struct grrl_learner *learner, const struct grrl_frame 
         grrl_perception_observe(&learner->perception, frame, pushing);
 }
 
-/* Links and joints of the state beyond the most believed before in this trial, which become known.
- */
+/* Links and joints of the state beyond the most seen before in this trial, which become known. */
 static unsigned reveal(struct grrl_learner *learner)
 {
     unsigned revealed = 0;
@@ -118,9 +92,8 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
         return status;
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     grrl_relational_state_of(model, learner->config.large_m, &learner->state, NULL, NULL);
-    grrl_attempts_look(&learner->attempts, model, learner->config.large_m);
     if (learner->phase == PHASE_BEGUN || learner->phase == PHASE_READY) {
-        (void)reveal(learner); /* what shows without a push is not paid */
+        (void)reveal(learner); /* no reward without a push */
         learner->phase = PHASE_READY;
     } else {
         learner->phase = PHASE_DONE;
@@ -128,25 +101,13 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
     return GRRL_OK;
 }
 
-static void recall_state(struct grrl_learner *learner)
+static struct grrl_view view_of(const struct grrl_learner *learner)
 {
-    grrl_experience_recall(&learner->store, &learner->state, &learner->config.policy.recall,
-                           &learner->recall);
+    return (struct grrl_view){&learner->perception, grrl_perception_model(&learner->perception),
+                              &learner->state, learner->config.large_m};
 }
 
-static void describe_actions(struct grrl_learner *learner)
-{
-    const struct grrl_model *model = grrl_perception_model(&learner->perception);
-    learner->contexts.n_links = model->n_bodies;
-    for (uint8_t i = 0; i < model->n_bodies; i++) {
-        enum grrl_status status = grrl_context_of(
-            &learner->attempts, model, learner->config.large_m, i, learner->contexts.action[i]);
-        assert(status == GRRL_OK); /* there is such a body */
-        (void)status;
-    }
-}
-
-/* Turns a choice into a push and remembers what it was made on. */
+/* Turns a choice into a push and remembers it. */
 static enum grrl_status decide(struct grrl_learner *learner, const struct grrl_choice *choice,
                                struct grrl_decision *decision)
 {
@@ -159,11 +120,15 @@ static enum grrl_status decide(struct grrl_learner *learner, const struct grrl_c
     *decision = (struct grrl_decision){
         .choice = *choice, .body_number = model->body[choice->link].number, .push = push};
     learner->last_choice = *choice;
-    learner->acted_on = learner->state;
-    grrl_attempts_add(&learner->attempts, model, choice->link, choice->direction);
+    learner->last_number = decision->body_number;
     learner->phase = PHASE_ACTING;
-    learner->pushes++;
     return GRRL_OK;
+}
+
+static void mark_used(struct grrl_learner *learner, const struct grrl_choice *choice)
+{
+    if (learner->policy.type->used != NULL && choice->source.kind != GRRL_SOURCE_NONE)
+        learner->policy.type->used(learner->policy.self, choice);
 }
 
 enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_decision *decision)
@@ -172,68 +137,39 @@ enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_d
         return GRRL_ERR_ORDER;
     if (learner->state.n == 0)
         return GRRL_ERR_NONE;
-    const struct grrl_policy_config *policy = &learner->config.policy;
+    struct grrl_view view = view_of(learner);
     struct grrl_choice choice;
-    if (policy->kind == GRRL_POLICY_LEARN) {
-        describe_actions(learner);
-        grrl_policy_choose_by_cases(policy, &learner->cases, &learner->contexts, &learner->random,
-                                    &choice);
-    } else {
-        recall_state(learner);
-        grrl_policy_choose(policy, &learner->store, &learner->recall, &learner->random, &choice);
-    }
+    learner->policy.type->choose(learner->policy.self, &view, &learner->random, &choice);
     enum grrl_status status = decide(learner, &choice, decision);
-    if (status == GRRL_OK && choice.from.experience != GRRL_NO_EXPERIENCE)
-        grrl_experience_touch(&learner->store, choice.from.experience);
+    if (status == GRRL_OK)
+        mark_used(learner, &choice);
     return status;
 }
 
 enum grrl_status grrl_learner_adopt(struct grrl_learner *learner, uint16_t body_number,
-                                    uint8_t direction, struct grrl_decision *decision)
+                                    uint8_t direction, bool exploited,
+                                    struct grrl_decision *decision)
 {
     if (learner->phase != PHASE_READY)
         return GRRL_ERR_ORDER;
     if (direction >= GRRL_DIRECTIONS)
         return GRRL_ERR_ARGUMENT;
-    const struct grrl_model *model = grrl_perception_model(&learner->perception);
+    struct grrl_view view = view_of(learner);
     uint8_t link = 0;
-    while (link < learner->state.n && model->body[link].number != body_number)
+    while (link < learner->state.n && view.model->body[link].number != body_number)
         link++;
     if (link == learner->state.n)
         return GRRL_ERR_NONE;
-    const struct grrl_policy_config *policy = &learner->config.policy;
-    struct grrl_choice choice = {
-        .link = link, .direction = direction, .reason = GRRL_CHOICE_FOREIGN};
-    if (policy->kind == GRRL_POLICY_LEARN) {
-        describe_actions(learner);
-        grrl_policy_explain_by_cases(policy, &learner->cases, &learner->contexts, &choice);
-    } else {
-        recall_state(learner);
-        grrl_policy_explain(policy, &learner->store, &learner->recall, &choice);
-    }
-    return decide(learner, &choice, decision);
-}
-
-static float limit(float x)
-{
-    return x > GRRL_MAX_TARGET ? GRRL_MAX_TARGET : x;
-}
-
-/* The paper's update: Q-learning with the instance-based Q function; sections V-C and V-D. */
-static void learn_q(struct grrl_learner *learner, bool ended, struct grrl_update *update)
-{
-    const struct grrl_policy_config *policy = &learner->config.policy;
-    if (!ended) {
-        recall_state(learner);
-        update->target += policy->gamma * grrl_policy_best_value(&learner->store, &learner->recall);
-    }
-    update->target = limit(update->target); /* a discount next to 1 adds up without end */
-    const struct grrl_choice *choice = &learner->last_choice;
-    uint32_t index;
-    if (policy->kind == GRRL_POLICY_PAPER &&
-        grrl_experience_update(&learner->store, &learner->acted_on, choice->link, choice->direction,
-                               update->target, policy->alpha, &index) == GRRL_OK)
-        update->experience = index;
+    struct grrl_choice choice = {.link = link,
+                                 .direction = direction,
+                                 .reason = GRRL_CHOICE_ADOPTED,
+                                 .source = grrl_no_source()};
+    if (learner->policy.type->explain != NULL)
+        learner->policy.type->explain(learner->policy.self, &view, &choice);
+    enum grrl_status status = decide(learner, &choice, decision);
+    if (status == GRRL_OK && exploited)
+        mark_used(learner, &choice);
+    return status;
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
@@ -241,57 +177,45 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
 {
     if (learner->phase != PHASE_DONE)
         return GRRL_ERR_ORDER;
-    const struct grrl_policy_config *policy = &learner->config.policy;
-    *update = (struct grrl_update){.experience = GRRL_NO_EXPERIENCE, .updated_case = GRRL_NO_CASE};
-    update->reward = (float)reveal(learner) + (ended ? policy->trial_reward : 0.0f);
-    update->target = update->reward;
-    if (policy->kind == GRRL_POLICY_LEARN) {
-        const struct grrl_choice *choice = &learner->last_choice;
-        update->updated_case = grrl_cases_learn(
-            &learner->cases, &policy->cases,
-            &learner->contexts.action[choice->link][choice->direction], update->reward);
-    } else {
-        learn_q(learner, ended, update);
+    float reward = (float)reveal(learner) + (ended ? learner->config.trial_reward : 0.0f);
+    *update = (struct grrl_update){.reward = reward, .target = reward, .index = GRRL_NO_ENTRY};
+    if (learner->policy.type->learn != NULL) {
+        const struct grrl_outcome outcome = {.view = view_of(learner),
+                                             .choice = learner->last_choice,
+                                             .body_number = learner->last_number,
+                                             .reward = reward,
+                                             .ended = ended};
+        learner->policy.type->learn(learner->policy.self, &outcome, update);
     }
     learner->phase = ended ? PHASE_IDLE : PHASE_READY;
     return GRRL_OK;
 }
 
-struct grrl_learner_usage grrl_learner_usage_of(const struct grrl_learner *learner)
+struct grrl_usage grrl_learner_usage(const struct grrl_learner *learner)
 {
-    if (learner->config.policy.kind == GRRL_POLICY_LEARN) {
-        return (struct grrl_learner_usage){learner->cases.n, learner->cases.capacity,
-                                           learner->cases.evictions};
-    }
-    return (struct grrl_learner_usage){learner->store.n_experiences,
-                                       learner->store.experiences_capacity,
-                                       learner->store.evictions};
+    const struct grrl_policy *policy = &learner->policy;
+    return policy->type->usage != NULL ? policy->type->usage(policy->self)
+                                       : (struct grrl_usage){0, 0, 0};
 }
 
 enum grrl_status grrl_learner_save(const struct grrl_learner *learner, const struct grrl_io *io)
 {
-    enum grrl_status status = grrl_experience_save(&learner->store, io);
-    return status == GRRL_OK ? grrl_cases_save(&learner->cases, io) : status;
+    const struct grrl_policy *policy = &learner->policy;
+    return policy->type->save != NULL ? policy->type->save(policy->self, io) : GRRL_ERR_NONE;
 }
 
-static void forget(struct grrl_learner *learner)
+void grrl_learner_clear(struct grrl_learner *learner)
 {
-    grrl_experience_clear(&learner->store);
-    grrl_cases_clear(&learner->cases);
+    if (learner->policy.type->clear != NULL)
+        learner->policy.type->clear(learner->policy.self);
 }
 
 enum grrl_status grrl_learner_load_torn(struct grrl_learner *learner, const struct grrl_io *io,
                                         uint32_t *lost)
 {
-    uint32_t lost_cases = 0;
-    grrl_cases_clear(&learner->cases);
-    enum grrl_status status = grrl_experience_load_torn(&learner->store, io, lost);
-    if (status == GRRL_OK)
-        status = grrl_cases_load_torn(&learner->cases, io, &lost_cases);
-    *lost += lost_cases;
-    if (status != GRRL_OK && status != GRRL_ERR_IO)
-        forget(learner);
-    return status;
+    const struct grrl_policy *policy = &learner->policy;
+    *lost = 0;
+    return policy->type->load != NULL ? policy->type->load(policy->self, io, lost) : GRRL_ERR_NONE;
 }
 
 enum grrl_status grrl_learner_load(struct grrl_learner *learner, const struct grrl_io *io)
@@ -299,7 +223,7 @@ enum grrl_status grrl_learner_load(struct grrl_learner *learner, const struct gr
     uint32_t lost;
     enum grrl_status status = grrl_learner_load_torn(learner, io, &lost);
     if (status == GRRL_ERR_IO)
-        forget(learner);
+        grrl_learner_clear(learner);
     return status;
 }
 

@@ -10,11 +10,28 @@
 
 #include <string.h>
 
-#define SEED_NEIGHBOURS 3 /* with the seed: the smallest group whose pose is worth something */
+/* With the seed a group of four, as many as make a body (min_features): a smaller one has a pose so
+ * uncertain that everything follows it. */
+#define SEED_NEIGHBOURS 3
+
+/* Hypotheses tried, evenly over the features: the cost of a split is linear in them. A part with
+ * one in ten of the features has four or five seeds. */
 #define SEEDS_MAX 48
-#define SPLIT_KEYFRAMES 12 /* that tell most, used to score hypotheses */
-#define MISFIT_CAP 400.0f  /* of one squared residual: high, to rank keyframes by it */
-#define INLIER_COST 3.5f   /* mean squared residual of a member; 2 is expected */
+
+/* Keyframes used to score hypotheses. Half are spread over the trial, since with the worst alone
+ * two links in one body stayed so for many pushes. */
+#define SPLIT_KEYFRAMES 12
+
+/* Of one squared residual, 20 standard deviations: high, since keyframes are ranked by it and those
+ * in which much moved apart must not all be the same. */
+#define MISFIT_CAP 400.0f
+
+/* Mean squared residual of a follower, where 2 is expected: over 12 keyframes noise exceeds it once
+ * in 77 features, over 6 once in 20. Those lost are reassigned afterwards. */
+#define INLIER_COST 3.5f
+
+#define GROW_ROUNDS 3 /* a group grows along a link, and settles */
+#define SEEN 100u     /* outweighs the frames averaged, 60 at most */
 
 /* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -201,7 +218,7 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
         unsigned seen = 0;
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w = p->keyframe[k].weight[slots[i]];
-            seen += w > 0 ? 100u + w : 0u;
+            seen += w > 0 ? SEEN + w : 0u;
         }
         if (seen > best_seen) {
             best_seen = seen;
@@ -216,7 +233,7 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
         if (p->keyframe[k0].weight[slots[i]] == 0)
             continue;
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
-        for (int round = 0; round < 3 && n_group >= 3; round++) {
+        for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
             uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
             memcpy(group, grown, n_grown * sizeof group[0]);
             n_group = n_grown;

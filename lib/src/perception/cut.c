@@ -12,8 +12,18 @@
 
 #include "perception/perception_internal.h"
 
+/* Rounds in which features are shared out between two crossing links. Each moves all features at
+ * once, from the quadrants of a cross, where most are right already. */
 #define ROUNDS 4
-#define DIRECTIONS 6 /* of the line, over half a turn */
+
+/* Of the line, over half a turn, 30 degrees apart: the best is within 15 degrees of where the links
+ * part, and what it leaves on the wrong side is reassigned. */
+#define DIRECTIONS 6
+
+/* A part whose share of the weights, or of the inertia, is below these is none: what is left of it
+ * is the rounding of differences between sums. */
+#define LEAST_SHARE 1e-3f
+#define LEAST_INERTIA_SHARE 1e-6f
 
 /* What one part of the features tells in one keyframe, weighted by 1 / variance: q is a feature's
  * place, d its residual. */
@@ -41,7 +51,7 @@ static float saved(const struct part_sum *s, float least_w)
         return 0.0f;
     float inertia = s->qq - grrl_vec2_dot(s->q, s->q) / s->w;
     float moment = s->moment - grrl_vec2_cross(s->q, s->d) / s->w;
-    float turn = inertia > 1e-6f * s->qq ? moment * moment / inertia : 0.0f;
+    float turn = inertia > LEAST_INERTIA_SHARE * s->qq ? moment * moment / inertia : 0.0f;
     return grrl_vec2_dot(s->d, s->d) / s->w + turn;
 }
 
@@ -49,7 +59,7 @@ static float saved_by_both(const struct part_sum *part, const struct part_sum *a
 {
     struct part_sum rest = *all;
     add(&rest, part, -1.0f);
-    float rounding = 1e-3f * all->w;
+    float rounding = LEAST_SHARE * all->w;
     return saved(part, rounding) + saved(&rest, rounding);
 }
 
@@ -184,7 +194,7 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
     struct grrl_vec2 mean = grrl_vec2_scale(part->q, 1.0f / part->w);
     struct grrl_vec2 shift = grrl_vec2_scale(part->d, 1.0f / part->w);
     float inertia = part->qq - grrl_vec2_dot(part->q, mean);
-    float turn = inertia > 1e-6f * part->qq
+    float turn = inertia > LEAST_INERTIA_SHARE * part->qq
                      ? (part->moment - grrl_vec2_cross(part->q, shift)) / inertia
                      : 0.0f;
     struct grrl_vec2 q = grrl_vec2_sub(grrl_vec2_scale(one->q, 1.0f / one->w), mean);
@@ -210,7 +220,7 @@ static float share_out(const struct grrl_perception *p, const struct grrl_rigid_
         struct part_sum right = all[k];
         add(&right, &left, -1.0f);
         total += saved_by_both(&left, &all[k]);
-        float rounding = 1e-3f * all[k].w;
+        float rounding = LEAST_SHARE * all[k].w;
         for (uint16_t i = 0; i < t->n && left.w > rounding && right.w > rounding; i++) {
             struct part_sum one = sum_of(p, t, t->slot[i], k);
             excess[i] += one.w > 0.0f ? left_over(&left, &one) - left_over(&right, &one) : 0.0f;

@@ -1,10 +1,20 @@
 /*
- * first_look.c: what may be a body before anything has moved. Features of objects lie densely,
- * those of the background do not: each dense group (blob) is one candidate link.
+ * initial_segmentation.c: what may be a body before anything has moved. Features of objects lie
+ * densely, those of the background do not: each dense group (blob) is one candidate link.
  */
 #include "perception/perception_internal.h"
 
-#define DENSITY_CONTRAST 1.4f /* log of squared distances: background is twice as sparse */
+/* Least difference of the mean logarithms of squared distances on either side of Otsu's threshold:
+ * ln 4 = 1.39, a background twice as sparse as the object. Distances within one density differ
+ * less. */
+#define DENSITY_CONTRAST 1.4f
+
+/* Features of one object lie this many times their usual distance apart at most. Of points strewn
+ * at random over a plane the second nearest is that far away once in 200,000 (Gamma distribution of
+ * its squared distance). */
+#define REACH 3.0f
+
+#define LEAST_M2 1e-9f /* added to squared distances (0.03 mm) before their logarithm is taken */
 
 /* Squared distance from slot i to its second nearest neighbour in the first keyframe. */
 static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
@@ -50,12 +60,12 @@ static float object_reach(float *distance2, uint16_t n)
     sort(distance2, n);
     float total = 0.0f;
     for (uint16_t i = 0; i < n; i++)
-        total += grrl_log(distance2[i] + 1e-9f);
+        total += grrl_log(distance2[i] + LEAST_M2);
     uint16_t dense = n;
     float best = 0.0f;
     float below = 0.0f;
     for (uint16_t i = 1; i < n; i++) {
-        below += grrl_log(distance2[i - 1] + 1e-9f);
+        below += grrl_log(distance2[i - 1] + LEAST_M2);
         float gap = below / (float)i - (total - below) / (float)(n - i);
         float between = gap * gap * (float)i * (float)(n - i);
         if (between > best && -gap > DENSITY_CONTRAST) {
@@ -63,7 +73,7 @@ static float object_reach(float *distance2, uint16_t n)
             dense = i;
         }
     }
-    return 3.0f * grrl_sqrt(distance2[dense / 2]);
+    return REACH * grrl_sqrt(distance2[dense / 2]);
 }
 
 /* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
@@ -112,6 +122,34 @@ bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body)
     return false;
 }
 
+/* Features of a blob are those of a body, or the background's. */
+static void settle_blob(struct grrl_perception *p, uint8_t blob, bool is_body)
+{
+    for (uint16_t j = 0; j < p->n_slots; j++) {
+        if (p->blob_of[j] == blob) {
+            p->body_of[j] = is_body ? (uint8_t)(blob - 1) : GRRL_FEATURE_BACKGROUND;
+            p->blob_of[j] = is_body ? blob : 0;
+        }
+    }
+}
+
+/* Grows blobs from all features and makes bodies of the large ones, GRRL_MAX_LINKS at most. */
+static void find_blobs(struct grrl_perception *p)
+{
+    uint8_t n = 0;
+    for (uint16_t i = 0; i < p->n_slots && n < GRRL_MAX_LINKS; i++) {
+        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0)
+            continue;
+        uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(n + 1));
+        bool is_body = size >= p->config.min_features + 1;
+        settle_blob(p, (uint8_t)(n + 1), is_body);
+        if (is_body) {
+            n++;
+            grrl_bodies_add(p);
+        }
+    }
+}
+
 void grrl_initial_segmentation(struct grrl_perception *p)
 {
     float values[GRRL_MAX_FEATURES];
@@ -130,21 +168,5 @@ void grrl_initial_segmentation(struct grrl_perception *p)
         return;
     float reach = object_reach(values, n);
     p->reach2_m2 = reach * reach;
-    uint8_t blob = 0;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0 || blob == GRRL_MAX_LINKS)
-            continue;
-        uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(blob + 1));
-        bool is_body = size >= p->config.min_features + 1;
-        for (uint16_t j = 0; j < p->n_slots; j++) {
-            if (p->blob_of[j] == blob + 1) {
-                p->body_of[j] = is_body ? blob : GRRL_FEATURE_BACKGROUND;
-                p->blob_of[j] = is_body ? (uint8_t)(blob + 1) : 0;
-            }
-        }
-        if (is_body) {
-            blob++;
-            grrl_bodies_add(p);
-        }
-    }
+    find_blobs(p);
 }

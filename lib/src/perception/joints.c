@@ -7,21 +7,68 @@
  *   free        anything; explains all, but pays for each keyframe in which it was needed
  * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
  * sliding), and a joint type is called only when the motion excites it.
+ *
+ * All are compared in chi squared, -2 ln(likelihood), so that odds are exp(-chi2 / 2). The chi
+ * squared of a model with m parameters over n keyframes, 2 residuals each, is expected to be 2 n -
+ * m; what it has beyond that is its excess. This is the Laplace approximation of the marginal
+ * likelihood with each parameter paid for at the rate of chi squared, 1, which is near enough:
+ * revolute and prismatic differ by one parameter, and TYPE_MARGIN is 8. docs/perception.md derives
+ * the fits and the evidence.
  */
 #include "perception/perception_internal.h"
 
-#define FREE_COST 14.0f       /* chi squared a free pose costs in a keyframe that needs it */
-#define FREE_COST_MAX 140.0f  /* neighbouring keyframes are not independent: no more than this */
-#define TYPE_MARGIN 8.0f      /* chi squared by which one type must be better than the other */
-#define MOVING_MISS_MAX 14.0f /* chi squared: a few frames of a fast body can lie aside */
-#define JOINT_PRIOR 2.0f      /* chi squared in favour of a joint where the motion tells nothing */
+/* Chi squared that free motion pays in a keyframe that needs it. A rigid pair, the 3 parameters of
+ * free motion at 0, reaches 14 by chance once in 340 keyframes: less is no motion. */
+#define FREE_COST 14.0f
+
+/* And in all: ten keyframes. Neighbouring keyframes of a push are not independent, so that forty of
+ * them must not make free motion impossible. */
+#define FREE_COST_MAX 140.0f
+
+/* Chi squared by which a type must be better than the other, and than free motion: odds of 55 to 1
+ * (exp(8 / 2)), a probability of 0.98. */
+#define TYPE_MARGIN 8.0f
+
+/* The most a keyframe of a push counts against a joint: as much as free motion pays for it, once in
+ * 1,100 keyframes by chance. A few frames of a fast body can lie aside by ten standard deviations.
+ * Of PRPRPRP with 20% missing and 2% outliers 1.0 instead of 2.5% ended at the cap (seed 47000). */
+#define MOVING_MISS_MAX FREE_COST
+
+/* Chi squared in favour of a joint where the motion tells nothing: odds of e to 1. Things side by
+ * side on the table are rather joined than not. */
+#define JOINT_PRIOR 2.0f
+
+/* A common turn counts so much for a slide at most: it leaves odds of 3 million to 1, more would
+ * only hide what later pushes say. */
 #define TURN_EVIDENCE_MAX 30.0f
-#define PUSH_EVIDENCE 4.0f  /* of each further push that slid along the same line */
-#define MISFIT_BASE 10.0f   /* chi squared beyond which a type does not explain the motion, .. */
-#define MISFIT_SIGMAS 5.0f  /* .. and its standard deviations over all keyframes */
-#define MISFIT_WEIGHT 0.1f  /* of chi squared missed, among joints equally well supported */
-#define WELL_SUPPORTED 6.0f /* more makes no joint likelier than another */
-#define EXCITED_SIGMAS 5.0f /* relative motion in standard deviations */
+
+/* Of each further push that slid along the same line. Untied things would go within 12 degrees of
+ * it, either way, once in exp(4 / 2) = 7 pushes. */
+#define PUSH_EVIDENCE 4.0f
+
+/* Excess beyond which a type does not explain the motion: this, and so many standard deviations of
+ * chi squared over all keyframes (2 sqrt(n), for 2 n residuals). Noise alone never gets there (4 in
+ * 10^6 trials of ten keyframes); the margin is for bodies that are not quite rigid. */
+#define MISFIT_BASE 10.0f
+#define MISFIT_SIGMAS 5.0f
+
+/* Of the excess, in the order of joints equally well supported: it decides between two, and is
+ * small beside WELL_SUPPORTED within the limits above. */
+#define MISFIT_WEIGHT 0.1f
+
+/* Chi squared better than untied motion; more makes no joint likelier than another (odds of 20 to
+ * 1). */
+#define WELL_SUPPORTED 6.0f
+
+/* Distance from its bodies, in units of gap_m, that costs a joint 1 in the order: 40 mm, the width
+ * of a link. */
+#define ORDER_SCALE 0.4f
+
+/* A range of motion tells a type if it is so many standard deviations of one keyframe, see
+ * FAR_SIGMAS in apart.c. */
+#define EXCITED_SIGMAS 5.0f
+
+#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
@@ -78,8 +125,8 @@ static float point_variance(const struct grrl_perception *p, const struct motion
 {
     float model = p->config.model_error_m;
     return motion->noise2 * (1.0f / r->pa->weight + 1.0f / r->pb->weight +
-                             0.5f * (lever_a2 / (r->pa->inertia + 1e-9f) +
-                                     lever_b2 / (r->pb->inertia + 1e-9f))) +
+                             0.5f * (lever_a2 / (r->pa->inertia + LEAST_INERTIA) +
+                                     lever_b2 / (r->pb->inertia + LEAST_INERTIA))) +
            2.0f * model * model + motion->bend_a + motion->bend_b;
 }
 
@@ -89,9 +136,9 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
     /* the model error of a body's n features acts on its turn like noise of one frame each */
     float model2 = p->config.model_error_m * p->config.model_error_m;
     return (motion->noise2 + 4.0f * model2) *
-               (1.0f / (r->pa->inertia + 1e-9f) + 1.0f / (r->pb->inertia + 1e-9f)) +
-           motion->bend_a * r->pa->weight / (r->pa->inertia + 1e-9f) +
-           motion->bend_b * r->pb->weight / (r->pb->inertia + 1e-9f);
+               (1.0f / (r->pa->inertia + LEAST_INERTIA) + 1.0f / (r->pb->inertia + LEAST_INERTIA)) +
+           motion->bend_a * r->pa->weight / (r->pa->inertia + LEAST_INERTIA) +
+           motion->bend_b * r->pb->weight / (r->pb->inertia + LEAST_INERTIA);
 }
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)
@@ -120,10 +167,71 @@ static float half_extent(const struct grrl_perception *p, uint8_t body)
     return grrl_sqrt(far2);
 }
 
+/* Sums over the keyframes, each weighted by 1 / variance of the distance of the two pivots. */
+struct pivot_sums {
+    float w;
+    float mc; /* sum of the rotations, w (c, s) */
+    float ms;
+    struct grrl_vec2 d; /* sum of w d */
+    struct grrl_vec2 e; /* sum of w R^T d */
+};
+
+static struct pivot_sums sum_for_pivot(const struct grrl_perception *p, const struct motion *motion,
+                                       float lever_a2, float lever_b2)
+{
+    struct pivot_sums sums = {0};
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float wk = 1.0f / point_variance(p, motion, r, lever_a2, lever_b2);
+        sums.w += wk;
+        sums.mc += wk * r->c;
+        sums.ms += wk * r->s;
+        sums.d = grrl_vec2_add(sums.d, grrl_vec2_scale(r->d, wk));
+        sums.e.x += wk * (r->c * r->d.x + r->s * r->d.y);
+        sums.e.y += wk * (-r->s * r->d.x + r->c * r->d.y);
+    }
+    return sums;
+}
+
 /*
- * Least squares for the pivot: pa + .. minimises sum w |pa - R pb - d|^2 + |pa|^2 / sa^2 +
- * |pb|^2 / sb^2. R is a rotation, so the 4 x 4 normal equations reduce to scalars.
+ * Least squares for the pivot, a in the frame of body a and b in that of body b. They minimise
+ *     sum w |a - R b - d|^2 + |a|^2 / sa^2 + |b|^2 / sb^2,
+ * where R and d are turn and shift of b's frame in a's. With M = sum w R, D = sum w d and
+ * E = sum w R^T d the normal equations are
+ *     (W + 1 / sa^2) a - M b = D,    -M^T a + (W + 1 / sb^2) b = -E.
+ * M is a rotation times a number, so that M^T M = |m|^2 I, and eliminating a leaves one scalar, the
+ * Schur complement: schur b = M^T D / (W + 1 / sa^2) - E. 1 / schur is the variance of b.
  */
+static void solve_pivot(const struct pivot_sums *sums, float sa, float sb,
+                        struct grrl_joint_fit *fit)
+{
+    float a = sums->w + 1.0f / (sa * sa);
+    float b = sums->w + 1.0f / (sb * sb);
+    float mc = sums->mc;
+    float ms = sums->ms;
+    struct grrl_vec2 d = sums->d;
+    float schur = b - (mc * mc + ms * ms) / a;
+    schur = schur > 1.0f / (sb * sb) ? schur : 1.0f / (sb * sb); /* rounding */
+    fit->in_b.x = ((mc * d.x + ms * d.y) / a - sums->e.x) / schur;
+    fit->in_b.y = ((-ms * d.x + mc * d.y) / a - sums->e.y) / schur;
+    fit->in_a.x = (d.x + mc * fit->in_b.x - ms * fit->in_b.y) / a;
+    fit->in_a.y = (d.y + ms * fit->in_b.x + mc * fit->in_b.y) / a;
+    fit->point_variance = 1.0f / schur;
+}
+
+/* Chi squared of the pivots' distance in a keyframe. */
+static float pivot_miss(const struct grrl_perception *p, const struct motion *motion,
+                        const struct relative *r, const struct grrl_joint_fit *fit, float lever_a2,
+                        float lever_b2)
+{
+    struct grrl_vec2 q = {r->c * fit->in_b.x - r->s * fit->in_b.y,
+                          r->s * fit->in_b.x + r->c * fit->in_b.y};
+    struct grrl_vec2 miss = grrl_vec2_sub(grrl_vec2_sub(fit->in_a, q), r->d);
+    return grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+}
+
+/* The pivot, how well the motion agrees with it, and the range of the turn. The weights depend on
+ * how far the pivot is from either body: half their extent at first, the pivot found after that. */
 static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
                          float hb, struct grrl_joint_fit *fit)
 {
@@ -133,30 +241,8 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     float lever_b2 = hb * hb;
     float chi2 = 0.0f;
     for (int round = 0; round < 2; round++) {
-        float w = 0.0f;
-        float mc = 0.0f;
-        float ms = 0.0f;
-        struct grrl_vec2 d = {0.0f, 0.0f};
-        struct grrl_vec2 e = {0.0f, 0.0f};
-        for (uint8_t k = 0; k < motion->n; k++) {
-            const struct relative *r = &motion->at[k];
-            float wk = 1.0f / point_variance(p, motion, r, lever_a2, lever_b2);
-            w += wk;
-            mc += wk * r->c;
-            ms += wk * r->s;
-            d = grrl_vec2_add(d, grrl_vec2_scale(r->d, wk));
-            e.x += wk * (r->c * r->d.x + r->s * r->d.y);
-            e.y += wk * (-r->s * r->d.x + r->c * r->d.y);
-        }
-        float a = w + 1.0f / (sa * sa);
-        float b = w + 1.0f / (sb * sb);
-        float schur = b - (mc * mc + ms * ms) / a;
-        schur = schur > 1.0f / (sb * sb) ? schur : 1.0f / (sb * sb); /* rounding */
-        fit->in_b.x = ((mc * d.x + ms * d.y) / a - e.x) / schur;
-        fit->in_b.y = ((-ms * d.x + mc * d.y) / a - e.y) / schur;
-        fit->in_a.x = (d.x + mc * fit->in_b.x - ms * fit->in_b.y) / a;
-        fit->in_a.y = (d.y + ms * fit->in_b.x + mc * fit->in_b.y) / a;
-        fit->point_variance = 1.0f / schur;
+        struct pivot_sums sums = sum_for_pivot(p, motion, lever_a2, lever_b2);
+        solve_pivot(&sums, sa, sb, fit);
         lever_a2 = grrl_vec2_dot(fit->in_a, fit->in_a);
         lever_b2 = grrl_vec2_dot(fit->in_b, fit->in_b);
     }
@@ -166,10 +252,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     float least_variance = 1e9f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
-        struct grrl_vec2 q = {r->c * fit->in_b.x - r->s * fit->in_b.y,
-                              r->s * fit->in_b.x + r->c * fit->in_b.y};
-        struct grrl_vec2 miss = grrl_vec2_sub(grrl_vec2_sub(fit->in_a, q), r->d);
-        float missed = grrl_vec2_dot(miss, miss) / point_variance(p, motion, r, lever_a2, lever_b2);
+        float missed = pivot_miss(p, motion, r, fit, lever_a2, lever_b2);
         if (is_doubtful(motion, k, missed)) {
             chi2 += MOVING_MISS_MAX;
             continue;
@@ -199,63 +282,93 @@ static struct grrl_vec2 slide_point(const struct motion *motion, const struct re
                               r->d.y - 0.5f * (middle.y + turn * middle.x)};
 }
 
-static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
-                          struct grrl_joint_fit *fit)
+/* A sliding pair: where b's origin is in a's frame in the mean, not weighted, .. */
+struct slide {
+    struct grrl_vec2 middle;
+    float lever2;          /* .. its squared distance from the point half way between the bodies, */
+    struct grrl_vec2 mean; /* .. a point of the line, and the sum of weights */
+    float w;
+};
+
+static float slide_weight(const struct grrl_perception *p, const struct motion *motion, uint8_t k,
+                          float lever2)
 {
-    struct grrl_vec2 middle = {0.0f, 0.0f};
+    return 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
+}
+
+static struct slide find_middle(const struct grrl_perception *p, const struct motion *motion)
+{
+    struct slide slide = {.w = 0.0f};
     for (uint8_t k = 0; k < motion->n; k++)
-        middle = grrl_vec2_add(middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
-    float lever2 = 0.25f * grrl_vec2_dot(middle, middle);
-    float w = 0.0f;
-    struct grrl_vec2 mean = {0.0f, 0.0f};
+        slide.middle =
+            grrl_vec2_add(slide.middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    slide.lever2 = 0.25f * grrl_vec2_dot(slide.middle, slide.middle);
     for (uint8_t k = 0; k < motion->n; k++) {
-        float wk = 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
-        w += wk;
-        mean =
-            grrl_vec2_add(mean, grrl_vec2_scale(slide_point(motion, &motion->at[k], middle), wk));
+        float wk = slide_weight(p, motion, k, slide.lever2);
+        struct grrl_vec2 point = slide_point(motion, &motion->at[k], slide.middle);
+        slide.w += wk;
+        slide.mean = grrl_vec2_add(slide.mean, grrl_vec2_scale(point, wk));
     }
-    mean = grrl_vec2_scale(mean, 1.0f / w);
+    slide.mean = grrl_vec2_scale(slide.mean, 1.0f / slide.w);
+    return slide;
+}
+
+/* The line: total least squares, the principal axis of the weighted positions. Returns the sum of
+ * squares along it over the variance, whose inverse is the variance of the direction. */
+static float find_slide_axis(const struct grrl_perception *p, const struct motion *motion,
+                             const struct slide *slide, struct grrl_vec2 *axis)
+{
     float xx = 0.0f;
     float xy = 0.0f;
     float yy = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
-        const struct relative *r = &motion->at[k];
-        struct grrl_vec2 q = grrl_vec2_sub(slide_point(motion, r, middle), mean);
-        float wk = 1.0f / point_variance(p, motion, r, lever2, lever2);
+        struct grrl_vec2 q =
+            grrl_vec2_sub(slide_point(motion, &motion->at[k], slide->middle), slide->mean);
+        float wk = slide_weight(p, motion, k, slide->lever2);
         xx += wk * q.x * q.x;
         xy += wk * q.x * q.y;
         yy += wk * q.y * q.y;
     }
     float major;
     float minor;
-    grrl_principal_axes(xx, xy, yy, &major, &minor, &fit->axis_in_a);
+    grrl_principal_axes(xx, xy, yy, &major, &minor, axis);
+    return major;
+}
+
+/* The line of sliding, how well the motion agrees with it, and the range of the slide. A keyframe
+ * has two residuals: across the line, and the turn from the mean turn. */
+static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
+                          struct grrl_joint_fit *fit)
+{
+    struct slide slide = find_middle(p, motion);
+    float major = find_slide_axis(p, motion, &slide, &fit->axis_in_a);
     float chi2 = 0.0f;
-    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], middle), fit->axis_in_a);
+    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], slide.middle), fit->axis_in_a);
     fit->lower = 0.0f;
     fit->upper = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
-        struct grrl_vec2 point = slide_point(motion, r, middle);
-        float across = grrl_vec2_cross(fit->axis_in_a, grrl_vec2_sub(point, mean));
+        struct grrl_vec2 point = slide_point(motion, r, slide.middle);
+        float across = grrl_vec2_cross(fit->axis_in_a, grrl_vec2_sub(point, slide.mean));
         float turn = turn_from_mean(motion, r);
-        float missed = across * across / point_variance(p, motion, r, lever2, lever2) +
+        float missed = across * across / point_variance(p, motion, r, slide.lever2, slide.lever2) +
                        turn * turn / turn_variance(p, motion, r);
         if (is_doubtful(motion, k, missed)) {
             chi2 += MOVING_MISS_MAX;
             continue;
         }
         chi2 += missed;
-        float slide = grrl_vec2_dot(point, fit->axis_in_a) - first;
-        fit->lower = slide < fit->lower ? slide : fit->lower;
-        fit->upper = slide > fit->upper ? slide : fit->upper;
+        float slid = grrl_vec2_dot(point, fit->axis_in_a) - first;
+        fit->lower = slid < fit->lower ? slid : fit->lower;
+        fit->upper = slid > fit->upper ? slid : fit->upper;
     }
     fit->excess = chi2 - 2.0f * (float)motion->n + 3.0f;
     float range = fit->upper - fit->lower;
     fit->excited = range > p->config.min_slide_m &&
-                   range * range * w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
-    fit->in_a = grrl_vec2_scale(mean, 1.0f);
+                   range * range * slide.w > EXCITED_SIGMAS * EXCITED_SIGMAS * (float)motion->n;
+    fit->in_a = slide.mean;
     fit->in_b = (struct grrl_vec2){0.0f, 0.0f};
-    fit->point_variance = 1.0f / w;
+    fit->point_variance = 1.0f / slide.w;
     fit->axis_variance = 1.0f / (major + 1.0f);
 }
 
@@ -421,7 +534,7 @@ static void model_probabilities(const float *chi2, float *probability)
 /* Of two joints equally well supported the one nearer to its bodies is the likelier. */
 static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
 {
-    float scale = 0.4f * p->config.gap_m;
+    float scale = ORDER_SCALE * p->config.gap_m;
     float da = distance_to_body(p, e->a, e->fit.in_a);
     float db = distance_to_body(p, e->b, e->fit.in_b);
     if (e->type == GRRL_PRISMATIC) {

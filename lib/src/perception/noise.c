@@ -5,13 +5,26 @@
 
 #include <string.h>
 
-#define FINEST 103               /* exponent of the first bin, biased by 127: 2^-24 m, 60 nm */
-#define MEDIAN_OF_NORMAL 0.6745f /* of its size, in standard deviations */
-#define ROOT_6 2.4494897f
-#define TRIM_SIGMAS 5.0f
-#define MAX_SAMPLES UINT32_C(0x7fffffff)
+/* Exponent of the first bin, biased by 127: 2^-24 m or 60 nm, below what a coordinate of a metre
+ * can tell in single precision. */
+#define FINEST 103
 
-enum { BITS = 4, ROUNDS = 4, PROBES = 8 }; /* bins an octave: 2 to the BITS */
+/* Median size of a normal variable in standard deviations: the 75% quantile. */
+#define MEDIAN_OF_NORMAL 0.6745f
+
+/* The variance of x1 - 2 x2 + x3 is (1 + 4 + 1) times that of x. */
+#define ROOT_6 2.4494897f
+
+/* Differences beyond this are outliers and motion: of normal ones 6 in 10^7 are. */
+#define TRIM_SIGMAS 5.0f
+
+#define MAX_SAMPLES UINT32_C(0x7fffffff) /* so that twice as many fit in 32 bits */
+
+enum {
+    BITS = 4,   /* bins an octave: 2 to the BITS, of 4 to 6% each; the median is interpolated */
+    ROUNDS = 4, /* of trimming; the median hardly moves after two */
+    PROBES = 8  /* places looked at for a track */
+};
 
 void grrl_noise_init(struct grrl_noise *noise)
 {

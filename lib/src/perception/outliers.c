@@ -8,8 +8,16 @@
  */
 #include "perception/perception_internal.h"
 
+/* A point this far off its body is an outlier: noise reaches it once in 270,000 points (the
+ * Rayleigh distribution: exp(-5^2 / 2)). */
 #define OFF_SIGMAS 5.0f
-#define ALONE_MAX 2 /* features that may be off in one keyframe of a body; more are a motion */
+
+/* Features that may be off in one keyframe of a body; more are a motion. At 2% outliers and three
+ * frames a keyframe, three or more of ten features are off by chance once in fifty keyframes. */
+#define ALONE_MAX 2
+
+/* A feature is off seldom if that is in one of this many keyframes. */
+#define SELDOM 4
 
 static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
 {
@@ -33,35 +41,41 @@ static bool is_seldom_off(const struct grrl_perception *p, uint16_t slot)
             off += is_off(p, slot, k) ? 1u : 0u;
         }
     }
-    return 4 * off <= seen + 3;
+    return SELDOM * off <= seen + SELDOM - 1;
+}
+
+/* Takes the features of a body that are off it in keyframe k out of that keyframe if they are few
+ * and seldom off; returns how many. */
+static uint32_t drop_from(struct grrl_perception *p, uint8_t body, uint8_t k)
+{
+    uint16_t off[ALONE_MAX];
+    unsigned n = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        if (p->body_of[i] == body && is_off(p, i, k)) {
+            if (n == ALONE_MAX)
+                return 0;
+            off[n++] = i;
+        }
+    }
+    uint32_t dropped = 0;
+    for (unsigned i = 0; i < n; i++) {
+        if (is_seldom_off(p, off[i])) {
+            p->keyframe[k].weight[off[i]] = 0;
+            dropped++;
+        }
+    }
+    return dropped;
 }
 
 bool grrl_outliers_drop(struct grrl_perception *p)
 {
-    bool dropped = false;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        if (p->keyframe[k].examined || p->keyframe[k].at_rest)
-            continue;
-        for (uint8_t b = 0; b < p->n_bodies; b++) {
-            uint16_t off[ALONE_MAX];
-            unsigned n = 0;
-            for (uint16_t i = 0; i < p->n_slots && n <= ALONE_MAX; i++) {
-                if (p->body_of[i] == b && is_off(p, i, k)) {
-                    if (n < ALONE_MAX)
-                        off[n] = i;
-                    n++;
-                }
-            }
-            for (unsigned i = 0; i < n && n <= ALONE_MAX; i++) {
-                if (is_seldom_off(p, off[i])) {
-                    p->keyframe[k].weight[off[i]] = 0;
-                    p->counts.outliers++;
-                    dropped = true;
-                }
-            }
-        }
-    }
+    uint32_t dropped = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        for (uint8_t b = 0; b < p->n_bodies && !p->keyframe[k].examined && !p->keyframe[k].at_rest;
+             b++)
+            dropped += drop_from(p, b, k);
     for (uint8_t k = 0; k < p->n_keyframes; k++)
         p->keyframe[k].examined = true;
-    return dropped;
+    p->counts.outliers += dropped;
+    return dropped > 0;
 }

@@ -1,14 +1,41 @@
+/*
+ * perception.c: tracks and keyframes, what was seen; and the order of an update.
+ */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
 enum {
-    REST_FRAMES_MAX = 60, /* more do not help: what limits then is not noise */
-    MOVING_FRAMES = 3,    /* averaged into one keyframe of a push */
-    JUMPS_UNTIL_NEW = 5   /* a point that stays away this long is another feature */
+    /* Averaged into one rest. The noise of their mean is 0.0007 / sqrt(60) = 0.00009 m: what limits
+     * after that is the model error (0.0001 m). */
+    REST_FRAMES_MAX = 60,
+    /* Averaged into one keyframe of a push: enough that an outlier is outvoted two to one, few
+     * enough that the mean of points on a bent path stays near the path. */
+    MOVING_FRAMES = 3,
+    /* A point that stays away this long is another feature: five outliers in a row befall a feature
+     * with 2% outliers once in 3 * 10^8 frames. */
+    JUMPS_UNTIL_NEW = 5,
+    /* Features that have moved make a keyframe, or end a rest: fewer can be outliers. */
+    MOVED_FEATURES = 3,
+    /* In a push features count if they were seen in all frames of the window, unless those are
+     * fewer than one in this many. */
+    COMPLETE_SHARE = 3,
+    /* And one in this many of all that are seen must have left its mean until a rest is none. */
+    SLIDING_SHARE = 10
 };
 
-#define REST_SIGMAS 6.0f /* points of one place at rest lie this near their mean */
+/* Points of one place at rest lie this near their mean: of 6 * 10^7 points (exp(-6^2 / 2) of the
+ * Rayleigh distribution) one is farther by chance, and outliers found a heap of their own. */
+#define REST_SIGMAS 6.0f
+
+/* A feature whose mean at rest is this far from its mean at the rest before has moved. The noise of
+ * one frame: means of ten frames have less than half of it, so that these are nine standard
+ * deviations of their difference. */
+#define MOVED_SIGMAS 4.0f
+
+/* A rest adds this many times as much as a keyframe of a push that differs as much from its
+ * predecessor: more frames are averaged in it. */
+#define REST_NOVELTY 2.0f
 
 void grrl_perception_config_default(struct grrl_perception_config *config)
 {
@@ -243,7 +270,7 @@ static float novelty(const struct grrl_perception *p, uint8_t k)
             sum += grrl_vec2_dot(d, d);
         }
     }
-    return p->keyframe[k].at_rest ? 2.0f * sum : sum;
+    return p->keyframe[k].at_rest ? REST_NOVELTY * sum : sum;
 }
 
 /* Makes room: the keyframe that adds least goes, never the first. */
@@ -279,7 +306,7 @@ static uint8_t points_needed(const struct grrl_perception *p)
         seen += weight > 0 ? 1u : 0u;
         complete += weight >= p->window.frames ? 1u : 0u;
     }
-    return 3 * complete >= seen ? p->window.frames : 1;
+    return COMPLETE_SHARE * complete >= seen ? p->window.frames : 1;
 }
 
 static void store_window(struct grrl_perception *p, struct grrl_perception_keyframe *key,
@@ -308,7 +335,7 @@ static struct grrl_perception_keyframe *new_keyframe(struct grrl_perception *p)
 static bool join_rest(struct grrl_perception *p)
 {
     struct grrl_perception_keyframe *key = &p->keyframe[p->n_keyframes - 1];
-    float distance = 4.0f * p->config.noise_m;
+    float distance = MOVED_SIGMAS * p->config.noise_m;
     if (!key->at_rest || moved_since(p, key, distance) > 0)
         return false;
     for (uint16_t i = 0; i < p->n_slots; i++) {
@@ -378,10 +405,10 @@ static bool still_sliding(const struct grrl_perception *p, const struct grrl_fra
             window_mean(p, (uint16_t)(p->slot_of_hash[h] - 1), &mean) > 0) {
             struct grrl_vec2 d = {frame->x_m[i] - mean.x, frame->y_m[i] - mean.y};
             seen++;
-            away += grrl_vec2_length(d) > 6.0f * p->config.noise_m ? 1u : 0u;
+            away += grrl_vec2_length(d) > REST_SIGMAS * p->config.noise_m ? 1u : 0u;
         }
     }
-    return away >= 3 && away * 10 > seen;
+    return away >= MOVED_FEATURES && away * SLIDING_SHARE > seen;
 }
 
 static void observe_rest(struct grrl_perception *p, const struct grrl_frame *frame)
@@ -405,8 +432,8 @@ static void observe_push(struct grrl_perception *p, const struct grrl_frame *fra
     }
     window_add(p, frame);
     if (p->window.frames >= MOVING_FRAMES) {
-        if (p->n_keyframes == 0 ||
-            moved_since(p, &p->keyframe[p->n_keyframes - 1], p->config.keyframe_m) >= 3)
+        if (p->n_keyframes == 0 || moved_since(p, &p->keyframe[p->n_keyframes - 1],
+                                               p->config.keyframe_m) >= MOVED_FEATURES)
             store_window(p, new_keyframe(p), false);
         window_clear(p);
     }

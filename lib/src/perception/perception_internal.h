@@ -1,22 +1,25 @@
 /*
  * perception_internal.h: the rooms behind perception.h.
  *
- *   perception.c  tracks and keyframes: what was seen
- *   rigid.c       poses and residuals of a set of features taken as one rigid body
- *   first_look.c  what may be a body before anything has moved
- *   outliers.c    points that no motion explains
- *   consensus.c   the largest set of features that moved as one
- *   cut.c         the line along which two bodies part
- *   bodies.c      which features belong together: split, reassign, merge
- *   joints.c      what ties two bodies together
- *   structure.c   the joints of all bodies, and the model
+ *   perception.c            tracks and keyframes: what was seen
+ *   rigid.c                 poses and residuals of features taken as one rigid body
+ *   initial_segmentation.c  what may be a body before anything has moved
+ *   outliers.c              points that no motion explains
+ *   consensus.c             the largest set of features that moved as one
+ *   cut.c                   the line along which two bodies part
+ *   assign.c                which body a feature moves with
+ *   apart.c                 whether two bodies moved apart
+ *   bodies.c                which features belong together: split, reassign, merge
+ *   joints.c                what ties two bodies together
+ *   structure.c             the joints of all bodies, and the model
  */
 #ifndef GRRL_PERCEPTION_INTERNAL_H
 #define GRRL_PERCEPTION_INTERNAL_H
 
 #include "grrl/perception/perception.h"
 
-/* Of one squared residual in units of its variance: an outlier weighs no more. */
+/* Of one squared residual in units of its variance, 4 standard deviations: noise reaches it once in
+ * 3,000 points, and an outlier weighs no more. */
 #define GRRL_COST_CAP 16.0f
 
 static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
@@ -26,7 +29,12 @@ static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 }
 
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
-float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight);
+static inline float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
+{
+    float noise = p->config.noise_m;
+    float model = p->config.model_error_m;
+    return noise * noise / (float)weight + model * model;
+}
 
 /*
  * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
@@ -62,7 +70,7 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
 uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
 
-/* first_look.c: the candidate bodies in the first keyframe. */
+/* initial_segmentation.c: the candidate bodies in the first keyframe. */
 void grrl_initial_segmentation(struct grrl_perception *p);
 
 /* Whether enough features of a body lay densely there, without those of others between them. */
@@ -106,6 +114,47 @@ float grrl_cut_best_cross(const struct grrl_perception *p, const struct grrl_rig
 /* By how many standard deviations of chi squared a body's features part along some line more than
  * noise explains; 0: they do not. */
 float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body);
+
+/*
+ * assign.c. Whether a feature left its place at any time; a body has moved if more of its features
+ * have than have not.
+ */
+bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot);
+bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body);
+
+/* Whether features of bodies a and b may be in one: their blobs are one, or both moved. */
+bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* The body a feature moves with, or GRRL_FEATURE_.. */
+uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
+
+/* Whether a feature of a body of n_own features would be no worse off in some other body. */
+bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
+
+/* apart.c: how far two bodies moved apart from rest to rest, and the variances of that. */
+struct grrl_apart_range {
+    float turn;
+    float shift2;   /* squared, of the point half way between them */
+    float turn_var; /* the largest: noise alone must not look far enough */
+    float shift_var;
+};
+
+struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p, uint8_t a,
+                                                 uint8_t b);
+
+/* The features of two bodies fitted as one. */
+void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                         struct grrl_rigid_group *together);
+
+/* Evidence that two bodies moved apart, in chi squared: what separate poses save beyond their
+ * parameters, in single keyframes. */
+float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* Whether two bodies may be one: they moved apart in no keyframe, or less than tells a joint. */
+bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* Whether two bodies moved apart so little that where they part is in doubt. */
+bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
 void grrl_bodies_add(struct grrl_perception *p);

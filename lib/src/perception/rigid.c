@@ -1,13 +1,19 @@
+/*
+ * rigid.c: poses and residuals of a set of features taken as one rigid body.
+ */
 #include "perception/perception_internal.h"
 
-#define OFF_SIGMAS 5.0f /* of a point in a keyframe */
+/* A point of a keyframe this many standard deviations off its body is an outlier: noise reaches it
+ * once in 270,000 points, see outliers.c. */
+#define OFF_SIGMAS 5.0f
 
-float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
-{
-    float noise = p->config.noise_m;
-    float model = p->config.model_error_m;
-    return noise * noise / (float)weight + model * model;
-}
+/* Of a body's points in a keyframe one in this many may be outliers; more are no outliers, the body
+ * is wrong. */
+#define OFF_SHARE 3
+
+#define SEEN 1000u /* outweighs any number of frames averaged, 255 at most */
+
+#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
 
 /* Least-squares pose of weighted points (Umeyama 1991, in the plane: no trigonometry needed). */
 static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
@@ -64,7 +70,7 @@ static uint8_t reference_keyframe(const struct grrl_perception *p, const uint16_
         unsigned score = 0;
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w = p->keyframe[k].weight[slots[i]];
-            score += w > 0 ? 1000u + w : 0u;
+            score += w > 0 ? SEEN + w : 0u;
         }
         if (score > best_score) {
             best_score = score;
@@ -179,7 +185,7 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
             if (p->keyframe[k].weight[slots[i]] > 0)
                 kept[n_kept++] = slots[i];
         struct grrl_perception_pose pose = poses[k * stride];
-        uint16_t least = (uint16_t)(n_kept - n_kept / 3);
+        uint16_t least = (uint16_t)(n_kept - n_kept / OFF_SHARE);
         uint16_t worst = 0;
         while (pose.weight > 0.0f && n_kept >= least &&
                (worst = farthest_off(p, k, kept, n_kept, shape, &pose)) < n_kept) {
@@ -207,7 +213,7 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
             grrl_vec2_sub(p->keyframe[k].point[slot], grrl_transform(pose->pose, local));
         float lever2 = grrl_vec2_dot(local, local);
         float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
-                         0.5f * noise2 * lever2 / (pose->inertia + 1e-9f);
+                         0.5f * noise2 * lever2 / (pose->inertia + LEAST_INERTIA);
         float d2 = grrl_vec2_dot(r, r) / variance;
         cost += d2 < cap ? d2 : cap;
         count++;

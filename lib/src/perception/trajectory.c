@@ -1,3 +1,6 @@
+/*
+ * trajectory.c: one point's path, as a circle or a line.
+ */
 #include "grrl/perception/trajectory.h"
 
 #include <stdbool.h>
@@ -6,12 +9,43 @@
 
 #include "grrl/base/geometry.h"
 
+/* Coordinates beyond this are refused, and no radius is said to be larger: squares of both stay far
+ * from the limits of a float. */
 #define FARTHEST_M 1000.0f
-#define OUTLIER_SIGMAS 5.0f
-#define RADIUS_SPREAD 0.7f /* of its logarithm: a factor of two */
-#define CAUCHY_SIGMAS 3.0f /* where a residual begins to count for less */
 
-enum { WINDOW = 2, MAX_STEPS = 25, MAX_DAMPINGS = 8, SWEEPS = 8, RADII = 64 };
+/* A sample this far from the running median is an outlier: noise alone is some 4 times in 10^6.
+ */
+#define OUTLIER_SIGMAS 5.0f
+
+/* Standard deviation of the logarithm of a radius about the usual one: ln 2, a factor of two. */
+#define RADIUS_SPREAD 0.7f
+
+/* Where a residual counts half (Cauchy's loss): noise is there once in 370 samples, so that a fit
+ * loses little by it. */
+#define CAUCHY_SIGMAS 3.0f
+
+/* The least of squared quantities under a root that are positive but for rounding, and of 1 + 4 a d
+ * for a curve that exists. */
+#define LEAST_SQUARE 1e-6f
+#define LEAST_EXISTING 1e-3f
+
+/* Marquardt's (1963) damping: where it starts, and what it is multiplied by after a good step and a
+ * bad one. A step that lowers the loss by a smaller share than CONVERGED is the last. */
+#define FIRST_DAMPING 1e-3f
+#define LESS_DAMPING 0.1f
+#define MORE_DAMPING 10.0f
+#define CONVERGED 1e-5f
+
+#define LEAST_PIVOT 1e-12f /* added to the diagonal, so that nothing is divided by zero */
+#define PRIOR_SPREADS 3.0f /* of the prior of the radius, integrated over: 99.7% of it */
+
+enum {
+    WINDOW = 2,     /* samples before and after in the running median: two outliers are outvoted */
+    MAX_STEPS = 25, /* of the fit; it converges in some ten */
+    MAX_DAMPINGS = 8, /* tried in a step: up to 10^8 times the first */
+    SWEEPS = 8,       /* of Jacobi's method, which converges quadratically: four would do */
+    RADII = 64        /* steps of the integral over the radius, to either side of the usual one */
+};
 
 /* A trajectory seen in its plane: u and v are its two main axes, w is across. */
 struct view {
@@ -216,12 +250,12 @@ static float distance(const struct curve *curve, struct grrl_vec2 p, float *deri
     float c = grrl_cos(curve->angle);
     float s = grrl_sin(curve->angle);
     float e2 = 1.0f + 4.0f * curve->a * curve->d;
-    float e = grrl_sqrt(e2 > 1e-6f ? e2 : 1e-6f);
+    float e = grrl_sqrt(e2 > LEAST_SQUARE ? e2 : LEAST_SQUARE);
     float square = grrl_vec2_dot(p, p);
     float along = c * p.x + s * p.y;
     float power = curve->a * square + e * along + curve->d;
     float root2 = 1.0f + 4.0f * curve->a * power;
-    float root = grrl_sqrt(root2 > 1e-6f ? root2 : 1e-6f);
+    float root = grrl_sqrt(root2 > LEAST_SQUARE ? root2 : LEAST_SQUARE);
     float result = 2.0f * power / (1.0f + root);
     if (derivative != NULL) {
         /* power = r + a r^2 for the distance r, and root = 1 + 2 a r */
@@ -264,7 +298,7 @@ static void solve_damped(const struct normal *normal, float damping, int first, 
     memset(x, 0, 3 * sizeof *x);
     for (int i = first; i < 3; i++) {
         memcpy(m[i], normal->h[i], sizeof normal->h[i]);
-        m[i][i] += damping * m[i][i] + 1e-12f;
+        m[i][i] += damping * m[i][i] + LEAST_PIVOT;
         m[i][3] = normal->g[i];
     }
     for (int i = first; i < 3; i++) { /* symmetric and positive: no pivoting */
@@ -285,7 +319,7 @@ static void solve_damped(const struct normal *normal, float damping, int first, 
 /* Levenberg and Marquardt's method from the curve given; a stays as it is unless `curved`. */
 static void refine(const struct view *view, bool curved, struct curve *curve, struct normal *normal)
 {
-    float damping = 1e-3f;
+    float damping = FIRST_DAMPING;
     evaluate(view, curve, true, normal);
     for (int step = 0; step < MAX_STEPS; step++) {
         struct curve next;
@@ -296,15 +330,15 @@ static void refine(const struct view *view, bool curved, struct curve *curve, st
             solve_damped(normal, damping, curved ? 0 : 1, x);
             next = (struct curve){curve->a + x[0], curve->d + x[1],
                                   grrl_wrap_rad(curve->angle + x[2])};
-            bool exists = 1.0f + 4.0f * next.a * next.d > 1e-3f;
+            bool exists = 1.0f + 4.0f * next.a * next.d > LEAST_EXISTING;
             if (exists)
                 evaluate(view, &next, true, &next_normal);
             better = exists && next_normal.loss < normal->loss;
-            damping *= better ? 0.1f : 10.0f;
+            damping *= better ? LESS_DAMPING : MORE_DAMPING;
         }
         if (!better)
             return;
-        bool done = normal->loss - next_normal.loss < 1e-5f * normal->loss;
+        bool done = normal->loss - next_normal.loss < CONVERGED * normal->loss;
         *curve = next;
         *normal = next_normal;
         if (done)
@@ -421,7 +455,7 @@ static float log_evidence_for_circle(const struct grrl_trajectory_config *config
     float prior = 0.0f;
     float sum = 0.0f;
     for (int i = -RADII; i <= RADII; i++) {
-        float deviation = 3.0f * (float)i / (float)RADII; /* in spreads of the logarithm */
+        float deviation = PRIOR_SPREADS * (float)i / (float)RADII; /* in spreads of the logarithm */
         float density = grrl_exp(-0.5f * deviation * deviation);
         float curvature = grrl_exp(RADIUS_SPREAD * deviation) / config->radius_m;
         float left = (curvature - 2.0f * circle->a) / sd;

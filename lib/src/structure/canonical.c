@@ -1,3 +1,4 @@
+/* Canonical forms by refinement and a search over what it leaves open. */
 #include "grrl/structure/canonical.h"
 
 #include <string.h>

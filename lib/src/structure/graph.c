@@ -1,3 +1,4 @@
+/* Vertices, joints, neighbours and orders of a graph. */
 #include "grrl/structure/graph.h"
 
 #include <assert.h>

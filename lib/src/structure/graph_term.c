@@ -1,3 +1,4 @@
+/* Terms to graphs, and graphs to terms that nest where they can. */
 #include <string.h>
 
 #include "base/bits.h"
@@ -25,7 +26,7 @@ static struct grrl_text complain(struct reader *reader, struct grrl_name name, c
     struct grrl_text message = grrl_text_begin(error->message, sizeof error->message);
     if (name.kind != GRRL_NAME_NONE) {
         grrl_text_string(&message, "link ");
-        grrl_term_print_name(&message, name);
+        grrl_term_print_name(reader->store, &message, name);
         grrl_text_char(&message, ' ');
     }
     grrl_text_string(&message, what);
@@ -100,7 +101,7 @@ static enum grrl_status join(struct reader *reader, struct grrl_name from, struc
         struct grrl_text message =
             complain(reader, from, a == b ? "is joined to itself" : "is joined twice to ");
         if (a != b)
-            grrl_term_print_name(&message, to);
+            grrl_term_print_name(reader->store, &message, to);
         return status;
     }
     if (reader->edges != NULL)

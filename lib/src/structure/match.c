@@ -1,3 +1,4 @@
+/* The VF2 search itself, an explicit stack of masks, and orbits by it. */
 #include "grrl/structure/match.h"
 
 #include <assert.h>

@@ -1,3 +1,4 @@
+/* One answer, by the cheapest means: canonical forms, trees or search. */
 #include <string.h>
 
 #include "grrl/structure/canonical.h"

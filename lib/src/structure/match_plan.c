@@ -1,3 +1,4 @@
+/* What is computed once for each graph: colours, counts, the order. */
 #include <string.h>
 
 #include "structure/match_private.h"

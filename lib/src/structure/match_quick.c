@@ -63,7 +63,7 @@ static void look_around(struct side *side, grrl_label reference)
         to_alike |= joined & ~others;
     }
     const uint64_t look[LOOKS / GRRL_JOINT_TYPES] = {to_alike, to_others, more};
-    for (int k = 0; k < LOOKS / GRRL_JOINT_TYPES; k++) {
+    for (size_t k = 0; k < LOOKS / GRRL_JOINT_TYPES; k++) {
         side->look[2 * k] = (uint32_t)look[k];
         side->look[2 * k + 1] = (uint32_t)(look[k] >> 32);
     }

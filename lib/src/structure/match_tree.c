@@ -1,3 +1,4 @@
+/* Matches a tree into a tree in polynomial time, by pairing children. */
 #include <string.h>
 
 #include "structure/match_private.h"

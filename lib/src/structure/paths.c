@@ -1,3 +1,4 @@
+/* Counts long chains of joints, and triples of joints at a link, by joint types. */
 #include <string.h>
 
 #include "base/bits.h"

@@ -1,3 +1,4 @@
+/* Computes the counts of a structure, and compares them. */
 #include "grrl/structure/signature.h"
 
 #include "base/bits.h"

@@ -1,3 +1,4 @@
+/* The store of terms: makes and checks nodes, and walks over them. */
 #include <assert.h>
 #include <string.h>
 
@@ -57,27 +58,54 @@ enum grrl_name_kind grrl_term_name_form(const char *text, size_t length)
     }
 }
 
+/* An identifier that fits the store and has no meaning of its own. */
+static bool is_symbol(const char *text, size_t length)
+{
+    if (length == 0 || length >= GRRL_SYMBOL_BYTES || !grrl_is_letter(text[0]) ||
+        grrl_term_name_form(text, length) != GRRL_NAME_NONE)
+        return false;
+    for (size_t i = 1; i < length; i++)
+        if (!grrl_is_word(text[i]))
+            return false;
+    return true;
+}
+
+/* The number from 1 of a symbol in a table of *n, added when it is new; 0 when the table is full.
+ */
+static uint8_t find_or_add(char (*table)[GRRL_SYMBOL_BYTES], uint8_t capacity, uint8_t *n,
+                           const char *text, size_t length)
+{
+    for (uint8_t i = 0; i < *n; i++)
+        if (memcmp(table[i], text, length) == 0 && table[i][length] == '\0')
+            return (uint8_t)(i + 1);
+    if (*n == capacity)
+        return 0;
+    memcpy(table[*n], text, length);
+    table[*n][length] = '\0';
+    return ++*n;
+}
+
 enum grrl_status grrl_term_intern(struct grrl_term_store *store, const char *text, size_t length,
                                   grrl_property *property)
 {
-    if (length == 0 || length >= GRRL_SYMBOL_BYTES || !grrl_is_lower(text[0]) ||
-        grrl_term_name_form(text, length) != GRRL_NAME_NONE)
+    if (!is_symbol(text, length) || !grrl_is_lower(text[0]))
         return GRRL_ERR_SYNTAX;
-    for (size_t i = 1; i < length; i++)
-        if (!grrl_is_word(text[i]))
-            return GRRL_ERR_SYNTAX;
-    for (uint8_t i = 0; i < store->n_symbols; i++) {
-        const char *symbol = store->symbols[i];
-        if (memcmp(symbol, text, length) == 0 && symbol[length] == '\0') {
-            *property = (grrl_property)(i + 1);
-            return GRRL_OK;
-        }
-    }
-    if (store->n_symbols == GRRL_MAX_SYMBOLS)
+    uint8_t number = find_or_add(store->symbols, GRRL_MAX_SYMBOLS, &store->n_symbols, text, length);
+    if (number == 0)
         return GRRL_ERR_FULL;
-    memcpy(store->symbols[store->n_symbols], text, length);
-    store->symbols[store->n_symbols][length] = '\0';
-    *property = ++store->n_symbols;
+    *property = number;
+    return GRRL_OK;
+}
+
+enum grrl_status grrl_term_intern_name(struct grrl_term_store *store, const char *text,
+                                       size_t length, struct grrl_name *name)
+{
+    if (!is_symbol(text, length))
+        return GRRL_ERR_SYNTAX;
+    uint8_t number = find_or_add(store->names, GRRL_MAX_NAMES, &store->n_names, text, length);
+    if (number == 0)
+        return GRRL_ERR_FULL;
+    *name = (struct grrl_name){GRRL_NAME_SYMBOL, number};
     return GRRL_OK;
 }
 
@@ -122,11 +150,26 @@ uint8_t grrl_term_trim(const grrl_property *properties, uint8_t n)
     return n;
 }
 
+static bool is_name(const struct grrl_term_store *store, struct grrl_name name)
+{
+    switch (name.kind) {
+    case GRRL_NAME_LINK:
+    case GRRL_NAME_FEATURES:
+    case GRRL_NAME_VARIABLE:
+        return true;
+    case GRRL_NAME_BACKGROUND:
+        return name.number == 0;
+    case GRRL_NAME_SYMBOL:
+        return name.number >= 1 && name.number <= store->n_names;
+    default:
+        return false;
+    }
+}
+
 enum grrl_status grrl_term_make_link(struct grrl_term_store *store, struct grrl_name name,
                                      const grrl_property *properties, uint8_t n, grrl_term *term)
 {
-    if (name.kind < GRRL_NAME_LINK || name.kind > GRRL_NAME_BACKGROUND ||
-        (name.kind == GRRL_NAME_BACKGROUND && name.number != 0) || n > GRRL_MAX_PROPERTIES)
+    if (!is_name(store, name) || n > GRRL_MAX_PROPERTIES)
         return GRRL_ERR_ARGUMENT;
     for (uint8_t i = 0; i < n; i++)
         if (properties[i] < GRRL_PROPERTY_VARIABLE && properties[i] > store->n_symbols)

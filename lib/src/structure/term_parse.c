@@ -1,3 +1,4 @@
+/* Parses a term with an explicit stack, and says where it is wrong. */
 #include <string.h>
 
 #include "structure/term_private.h"
@@ -89,13 +90,29 @@ static enum grrl_status unexpected(struct parser *parser, size_t at, const char 
     return GRRL_ERR_SYNTAX;
 }
 
-static enum grrl_status store_full(struct parser *parser, size_t at)
+static enum grrl_status holds_only(struct parser *parser, size_t at, uint32_t n, const char *what)
 {
     struct grrl_text message = error_at(parser, at);
     grrl_text_string(&message, "the term store is full: it holds ");
-    grrl_text_number(&message, parser->store->capacity - 1u);
-    grrl_text_string(&message, " nodes");
+    grrl_text_number(&message, n);
+    grrl_text_string(&message, what);
     return GRRL_ERR_FULL;
+}
+
+static enum grrl_status store_full(struct parser *parser, size_t at)
+{
+    return holds_only(parser, at, parser->store->capacity - 1u, " nodes");
+}
+
+static enum grrl_status too_long(struct parser *parser, size_t at, const char *what)
+{
+    struct grrl_text message = error_at(parser, at);
+    grrl_text_string(&message, "the word is too long for ");
+    grrl_text_string(&message, what);
+    grrl_text_string(&message, ", which has at most ");
+    grrl_text_number(&message, GRRL_SYMBOL_BYTES - 1u);
+    grrl_text_string(&message, " characters");
+    return GRRL_ERR_SYNTAX;
 }
 
 static void skip_space(struct parser *parser)
@@ -113,7 +130,9 @@ static void skip_space(struct parser *parser)
 static char peek(struct parser *parser)
 {
     skip_space(parser);
-    return parser->at < parser->length ? parser->text[parser->at] : '\0';
+    if (parser->at == parser->length)
+        return '\0';
+    return parser->text[parser->at];
 }
 
 static bool accept(struct parser *parser, char c)
@@ -133,11 +152,28 @@ static uint32_t read_number(const struct parser *parser, size_t from, size_t end
     return number <= limit ? number : limit + 1;
 }
 
-/* A name in the word from..end, whose form was checked. */
+static enum grrl_status read_identifier(struct parser *parser, size_t from, size_t end,
+                                        const char *expected, struct grrl_name *name)
+{
+    if (end == from || !grrl_is_letter(parser->text[from]))
+        return unexpected(parser, from, expected);
+    switch (grrl_term_intern_name(parser->store, parser->text + from, end - from, name)) {
+    case GRRL_OK:
+        return GRRL_OK;
+    case GRRL_ERR_FULL:
+        return holds_only(parser, from, GRRL_MAX_NAMES, " identifiers as names");
+    default:
+        return too_long(parser, from, "a name");
+    }
+}
+
+/* A name in the word from..end; `expected` says what stands there otherwise. */
 static enum grrl_status read_name(struct parser *parser, size_t from, size_t end,
-                                  struct grrl_name *name)
+                                  const char *expected, struct grrl_name *name)
 {
     enum grrl_name_kind kind = grrl_term_name_form(parser->text + from, end - from);
+    if (kind == GRRL_NAME_NONE)
+        return read_identifier(parser, from, end, expected, name);
     uint32_t number = 0;
     if (kind != GRRL_NAME_BACKGROUND)
         number = read_number(parser, from + 1, end, UINT16_MAX);
@@ -176,7 +212,7 @@ static enum grrl_status read_property(struct parser *parser, size_t from, size_t
     case GRRL_ERR_FULL:
         return refuse(parser, from, GRRL_ERR_FULL, "the store knows no more different properties");
     default:
-        return refuse(parser, from, GRRL_ERR_SYNTAX, "the word is too long for a property");
+        return too_long(parser, from, "a property");
     }
 }
 
@@ -199,7 +235,6 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
         size_t end = word_end(parser, from);
         if (end == from)
             return unexpected(parser, from, "a property or the name of a link");
-        bool is_name = grrl_term_name_form(parser->text + from, end - from) != GRRL_NAME_NONE;
         parser->at = end;
         if (accept(parser, ',')) {
             if (n == GRRL_MAX_PROPERTIES)
@@ -211,36 +246,45 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
             continue;
         }
         if (!accept(parser, ')'))
-            return unexpected(parser, parser->at,
-                              is_name ? "')' after the name of a link"
-                                      : "',' or ')' after a property");
-        if (!is_name)
-            return unexpected(parser, from, "a name such as f1, v1 or l1 at the end of a link");
+            return unexpected(parser, parser->at, "',' after a property or ')' after a name");
         struct grrl_name name;
-        enum grrl_status status = read_name(parser, from, end, &name);
+        enum grrl_status status = read_name(
+            parser, from, end, "a name such as f1, v1, l1 or blade1 at the end of a link", &name);
         return status != GRRL_OK ? status : make_link(parser, begin, name, properties, n, term);
     }
 }
 
-/* The word at the parser, as L(..) or a bare name. */
-static enum grrl_status read_link_or_name(struct parser *parser, const char *expected,
-                                          grrl_term *term)
+/* A word where a term begins. A '(' after it makes it a head, which must be one of the letters. */
+struct word {
+    size_t from;
+    size_t end;
+    bool is_head;
+    char letter; /* of a head of one letter, '\0' otherwise */
+};
+
+/* Moves past the word, and past the '(' of a head. */
+static struct word read_word(struct parser *parser)
 {
     skip_space(parser);
-    size_t from = parser->at;
-    size_t end = word_end(parser, from);
-    if (end - from == 1 && parser->text[from] == 'L') {
-        parser->at = end;
-        if (!accept(parser, '('))
-            return unexpected(parser, parser->at, "'(' after L");
-        return read_link(parser, from, term);
-    }
-    if (grrl_term_name_form(parser->text + from, end - from) == GRRL_NAME_NONE)
-        return unexpected(parser, from, expected);
-    parser->at = end;
+    struct word word = {.from = parser->at, .end = word_end(parser, parser->at)};
+    parser->at = word.end;
+    word.is_head = word.end > word.from && accept(parser, '(');
+    if (word.is_head && word.end - word.from == 1)
+        word.letter = parser->text[word.from];
+    return word;
+}
+
+/* The word as L(..) or a bare name. */
+static enum grrl_status read_link_or_name(struct parser *parser, struct word word,
+                                          const char *expected, grrl_term *term)
+{
+    if (word.letter == 'L')
+        return read_link(parser, word.from, term);
+    if (word.is_head)
+        return unexpected(parser, word.from, expected);
     struct grrl_name name;
-    enum grrl_status status = read_name(parser, from, end, &name);
-    return status != GRRL_OK ? status : make_link(parser, from, name, NULL, 0, term);
+    enum grrl_status status = read_name(parser, word.from, word.end, expected, &name);
+    return status != GRRL_OK ? status : make_link(parser, word.from, name, NULL, 0, term);
 }
 
 static enum grrl_status read_direction(struct parser *parser, uint8_t *direction)
@@ -264,15 +308,14 @@ static enum grrl_status read_direction(struct parser *parser, uint8_t *direction
     return GRRL_OK;
 }
 
-/* What follows the "A" of an action, which is the whole text. */
+/* What follows the "A(" of an action, which is the whole text. */
 static enum grrl_status read_action(struct parser *parser, size_t begin, grrl_term *term)
 {
     if (parser->depth > 0 || parser->frames[0].current != 0)
         return refuse(parser, begin, GRRL_ERR_SYNTAX, "an action is no part of another term");
-    if (!accept(parser, '('))
-        return unexpected(parser, parser->at, "'(' after A");
     grrl_term link;
-    enum grrl_status status = read_link_or_name(parser, "a link as the first argument of A", &link);
+    enum grrl_status status =
+        read_link_or_name(parser, read_word(parser), "a link as the first argument of A", &link);
     if (status != GRRL_OK)
         return status;
     if (!accept(parser, ','))
@@ -309,26 +352,20 @@ static enum grrl_term_kind relation_of(char letter)
 static enum grrl_status read_operand(struct parser *parser, grrl_term *term)
 {
     for (;;) {
-        skip_space(parser);
-        size_t begin = parser->at;
-        size_t end = word_end(parser, begin);
-        char letter = end - begin == 1 ? parser->text[begin] : '\0';
-        if (letter == 'A') {
-            parser->at = end;
-            return read_action(parser, begin, term);
-        }
-        if (letter == '\0' || relation_of(letter) == GRRL_TERM_AND)
-            return read_link_or_name(parser, "a link or one of R, P, D, A", term);
-        parser->at = end;
-        if (!accept(parser, '('))
-            return unexpected(parser, parser->at, "'(' after the letter of a relation");
+        struct word word = read_word(parser);
+        if (word.letter == 'A')
+            return read_action(parser, word.from, term);
+        if (word.is_head && word.letter != 'L' && relation_of(word.letter) == GRRL_TERM_AND)
+            return unexpected(parser, word.from, "R, P, D, L or A before '('");
+        if (relation_of(word.letter) == GRRL_TERM_AND)
+            return read_link_or_name(parser, word, "a link or one of R, P, D, A", term);
         if (parser->depth == GRRL_MAX_TERM_DEPTH)
-            return refuse(parser, begin, GRRL_ERR_FULL, "relations nest too deeply");
+            return refuse(parser, word.from, GRRL_ERR_FULL, "relations nest too deeply");
         struct frame *frame = &parser->frames[++parser->depth];
         memset(frame, 0, sizeof *frame);
-        frame->relation = grrl_term_new(parser->store, relation_of(letter));
+        frame->relation = grrl_term_new(parser->store, relation_of(word.letter));
         if (frame->relation == 0)
-            return store_full(parser, begin);
+            return store_full(parser, word.from);
     }
 }
 
@@ -417,10 +454,12 @@ enum grrl_status grrl_term_parse(struct grrl_term_store *store, const char *text
         .store = store, .text = text, .length = length, .error = error != NULL ? error : &unwanted};
     uint16_t mark = grrl_term_mark(store);
     uint8_t n_symbols = store->n_symbols;
+    uint8_t n_names = store->n_names;
     enum grrl_status status = parse(&parser);
     if (status != GRRL_OK) {
         grrl_term_release(store, mark);
         store->n_symbols = n_symbols;
+        store->n_names = n_names;
         return status;
     }
     *term = parser.frames[0].current;

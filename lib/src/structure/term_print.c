@@ -1,6 +1,8 @@
+/* Prints a term into a buffer of fixed size. */
 #include "structure/term_private.h"
 
-void grrl_term_print_name(struct grrl_text *text, struct grrl_name name)
+void grrl_term_print_name(const struct grrl_term_store *store, struct grrl_text *text,
+                          struct grrl_name name)
 {
     switch (name.kind) {
     case GRRL_NAME_LINK:
@@ -15,11 +17,24 @@ void grrl_term_print_name(struct grrl_text *text, struct grrl_name name)
     case GRRL_NAME_BACKGROUND:
         grrl_text_string(text, "lb");
         return;
+    case GRRL_NAME_SYMBOL:
+        grrl_text_string(text, name.number >= 1 && name.number <= store->n_names
+                                   ? store->names[name.number - 1]
+                                   : "?");
+        return;
     default:
         grrl_text_char(text, '?');
         return;
     }
     grrl_text_number(text, name.number);
+}
+
+const char *grrl_term_name_text(const struct grrl_term_store *store, struct grrl_name name,
+                                char text[GRRL_NAME_BYTES])
+{
+    struct grrl_text out = grrl_text_begin(text, GRRL_NAME_BYTES);
+    grrl_term_print_name(store, &out, name);
+    return text;
 }
 
 static void print_property(const struct grrl_term_store *store, struct grrl_text *text,
@@ -40,7 +55,7 @@ static void print_link(const struct grrl_term_store *store, struct grrl_text *te
                        const struct grrl_term_node *node)
 {
     if (node->n_properties == 0) {
-        grrl_term_print_name(text, node->name);
+        grrl_term_print_name(store, text, node->name);
         return;
     }
     grrl_text_string(text, "L(");
@@ -48,7 +63,7 @@ static void print_link(const struct grrl_term_store *store, struct grrl_text *te
         print_property(store, text, node->properties[i]);
         grrl_text_string(text, ", ");
     }
-    grrl_term_print_name(text, node->name);
+    grrl_term_print_name(store, text, node->name);
     grrl_text_char(text, ')');
 }
 

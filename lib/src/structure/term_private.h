@@ -62,14 +62,20 @@ static inline bool grrl_is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-static inline bool grrl_is_word(char c)
+static inline bool grrl_is_letter(char c)
 {
-    return grrl_is_lower(c) || grrl_is_digit(c) || (c >= 'A' && c <= 'Z') || c == '_';
+    return grrl_is_lower(c) || (c >= 'A' && c <= 'Z');
 }
 
-/* The kind of a name that this word has the form of; GRRL_NAME_NONE for an atom. */
+static inline bool grrl_is_word(char c)
+{
+    return grrl_is_letter(c) || grrl_is_digit(c) || c == '_';
+}
+
+/* Which of l3, f3, v3 and lb this word has the form of; GRRL_NAME_NONE for any other. */
 enum grrl_name_kind grrl_term_name_form(const char *text, size_t length);
 
-void grrl_term_print_name(struct grrl_text *text, struct grrl_name name);
+void grrl_term_print_name(const struct grrl_term_store *store, struct grrl_text *text,
+                          struct grrl_name name);
 
 #endif

@@ -1,3 +1,4 @@
+/* Unifies two terms, and substitutes variables. */
 #include "structure/term_private.h"
 
 static bool same_name(struct grrl_name a, struct grrl_name b)

@@ -1,14 +1,22 @@
 /*
- * config.h: the capacities of the library, fixed at compile time.
+ * config.h: the capacities of the library, fixed at compile time: plain numbers.
  *
- * Each is a default that a build may override (-DGRRL_MAX_LINKS=32); the installed CMake package
- * passes the values the library was built with on to its users, so that the structs agree.
- * docs/memory.md lists the size of every struct for the defaults.
+ * A CMake build takes them from its cache (cmake -DGRRL_MAX_LINKS=32) and writes them to
+ * grrl_capacities.h. Whoever compiles against that build, in its tree or installed, gets the same
+ * numbers, and an #error for a -D of another one. Without CMake there is no such file: the defaults
+ * below hold, or -DGRRL_MAX_LINKS=32 for the library and its callers alike; where they differ, the
+ * program does not link (GRRL_SIZED). docs/memory.md says what each capacity costs.
  */
 #ifndef GRRL_CONFIG_H
 #define GRRL_CONFIG_H
 
 #include <assert.h> /* static_assert, in C and C++ */
+
+#if defined(__has_include)
+#if __has_include("grrl_capacities.h")
+#include "grrl_capacities.h"
+#endif
+#endif
 
 /* Links of one structure, all objects on the table together: 2 to 32. */
 #ifndef GRRL_MAX_LINKS
@@ -48,6 +56,22 @@
 #define GRRL_MAX_TERM_DEPTH 64
 #endif
 
+/* The most states that one recall may search for sub-structures; five bytes of stack each. */
+#ifndef GRRL_RECALL_STATES
+#define GRRL_RECALL_STATES 512
+#endif
+
+/* Search steps that one recall may spend on sub-structures, over all states: a bound of some
+ * milliseconds on a PC. What is left out is the farthest. */
+#ifndef GRRL_RECALL_STEPS
+#define GRRL_RECALL_STEPS 500000
+#endif
+
+/* Cells of an index: states with the same numbers of links and joints of each type share one. */
+#ifndef GRRL_EXPERIENCE_CELLS
+#define GRRL_EXPERIENCE_CELLS 1024
+#endif
+
 static_assert(GRRL_MAX_LINKS >= 2 && GRRL_MAX_LINKS <= 32, "links are bits of a 32-bit mask");
 static_assert(GRRL_MAX_JOINTS >= GRRL_MAX_LINKS - 1, "a tree must fit");
 static_assert(GRRL_MAX_FEATURES >= 8 && GRRL_MAX_FEATURES <= 1024, "feature slots");
@@ -55,5 +79,24 @@ static_assert(GRRL_MAX_KEYFRAMES >= 8 && GRRL_MAX_KEYFRAMES <= 255, "keyframe sl
 static_assert(GRRL_MAX_PROPERTIES >= 1 && GRRL_MAX_PROPERTIES <= 8, "bytes of a 64-bit label");
 static_assert(GRRL_MAX_TERM_DEPTH >= 2 && GRRL_MAX_TERM_DEPTH <= 127, "depths are bytes");
 static_assert(GRRL_MAX_SYMBOLS >= 8 && GRRL_MAX_SYMBOLS <= 127, "symbols are 7-bit ids");
+static_assert(GRRL_RECALL_STATES >= 1 && GRRL_RECALL_STEPS >= 1, "a recall may search");
+static_assert(GRRL_EXPERIENCE_CELLS >= 1, "an index has a cell");
+
+/*
+ * The symbol of a function that fills a struct sized by capacities: its name and those capacities,
+ * so that a caller with other ones gets an undefined reference instead of an overrun.
+ */
+#define GRRL_SIZED(name)                                                                           \
+    GRRL_SIZED_EXPAND(name, GRRL_MAX_LINKS, GRRL_SIZED_JOINTS, GRRL_MAX_FEATURES,                  \
+                      GRRL_MAX_KEYFRAMES, GRRL_MAX_PROPERTIES, GRRL_MAX_SYMBOLS,                   \
+                      GRRL_SYMBOL_BYTES, GRRL_EXPERIENCE_CELLS)
+#define GRRL_SIZED_EXPAND(...) GRRL_SIZED_PASTE(__VA_ARGS__)
+#define GRRL_SIZED_PASTE(name, l, j, f, k, p, s, b, c)                                             \
+    name##_links##l##_joints##j##_features##f##_frames##k##_places##p##_symbols##s##x##b##_cells##c
+#if GRRL_MAX_JOINTS == 2 * GRRL_MAX_LINKS
+#define GRRL_SIZED_JOINTS 2x /* the default is no plain number */
+#else
+#define GRRL_SIZED_JOINTS GRRL_MAX_JOINTS
+#endif
 
 #endif

@@ -39,17 +39,65 @@ float grrl_sqrt(float x);
 
 bool grrl_is_finite(float x);
 
-struct grrl_vec2 grrl_vec2_add(struct grrl_vec2 a, struct grrl_vec2 b);
-struct grrl_vec2 grrl_vec2_sub(struct grrl_vec2 a, struct grrl_vec2 b);
-struct grrl_vec2 grrl_vec2_scale(struct grrl_vec2 a, float factor);
-float grrl_vec2_dot(struct grrl_vec2 a, struct grrl_vec2 b);
-float grrl_vec2_cross(struct grrl_vec2 a, struct grrl_vec2 b);
-float grrl_vec2_length(struct grrl_vec2 a);
+/* Inline, for they are called more often than anything else. A caller who wants the library's bits
+ * from them compiles with -ffp-contract=off, as the library does. */
 
-struct grrl_vec2 grrl_rotate(struct grrl_pose pose, struct grrl_vec2 local);
-struct grrl_vec2 grrl_unrotate(struct grrl_pose pose, struct grrl_vec2 world);
-struct grrl_vec2 grrl_transform(struct grrl_pose pose, struct grrl_vec2 local);
-struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world);
+static inline struct grrl_vec2 grrl_vec2_add(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    struct grrl_vec2 result = {a.x + b.x, a.y + b.y};
+    return result;
+}
+
+static inline struct grrl_vec2 grrl_vec2_sub(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    struct grrl_vec2 result = {a.x - b.x, a.y - b.y};
+    return result;
+}
+
+static inline struct grrl_vec2 grrl_vec2_scale(struct grrl_vec2 a, float factor)
+{
+    struct grrl_vec2 result = {a.x * factor, a.y * factor};
+    return result;
+}
+
+static inline float grrl_vec2_dot(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    return a.x * b.x + a.y * b.y;
+}
+
+static inline float grrl_vec2_cross(struct grrl_vec2 a, struct grrl_vec2 b)
+{
+    return a.x * b.y - a.y * b.x;
+}
+
+static inline float grrl_vec2_length(struct grrl_vec2 a)
+{
+    return grrl_sqrt(grrl_vec2_dot(a, a));
+}
+
+static inline struct grrl_vec2 grrl_rotate(struct grrl_pose pose, struct grrl_vec2 local)
+{
+    struct grrl_vec2 result = {pose.c * local.x - pose.s * local.y,
+                               pose.s * local.x + pose.c * local.y};
+    return result;
+}
+
+static inline struct grrl_vec2 grrl_unrotate(struct grrl_pose pose, struct grrl_vec2 world)
+{
+    struct grrl_vec2 result = {pose.c * world.x + pose.s * world.y,
+                               pose.c * world.y - pose.s * world.x};
+    return result;
+}
+
+static inline struct grrl_vec2 grrl_transform(struct grrl_pose pose, struct grrl_vec2 local)
+{
+    return grrl_vec2_add(grrl_rotate(pose, local), pose.p);
+}
+
+static inline struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world)
+{
+    return grrl_unrotate(pose, grrl_vec2_sub(world, pose.p));
+}
 
 /* The angle brought into (-pi, pi]; NaN beyond 8192 rad. */
 float grrl_wrap_rad(float angle_rad);

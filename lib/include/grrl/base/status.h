@@ -31,7 +31,8 @@ enum grrl_status {
     GRRL_ERR_FORMAT = -9,    /* a file is not one of ours */
     GRRL_ERR_VERSION = -10,  /* a file of ours, of a version or build that does not fit */
     GRRL_ERR_CORRUPT = -11,  /* a file of ours, damaged */
-    GRRL_ERR_ORDER = -12     /* a call out of order */
+    GRRL_ERR_ORDER = -12,    /* a call out of order */
+    GRRL_ERR_POLICY = -13    /* a file of ours, of another policy */
 };
 
 /* A short English text without a full stop, never NULL. */

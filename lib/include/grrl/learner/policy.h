@@ -1,106 +1,169 @@
 /*
- * policy.h: which action to take.
+ * policy.h: how a policy plugs into the learner.
  *
- * GRRL_POLICY_LEARN expects of each action what the cases of contexts like its own let expect
- * (case_base.h) and takes the one with the highest upper bound.
- *
- * GRRL_POLICY_PAPER is the paper's rule (section V-E). phi is the share of the state's actions with
- * experience. With probability exp(-beta phi) a new action is tried, uniformly; otherwise Interval
- * Estimation (Kaelbling, "Learning in Embedded Systems", 1993) takes the known one with the highest
- * upper bound of its mean.
+ * A policy decides which link to push in which direction, and may learn from what the push reveals.
+ * It is a table of operations (struct grrl_policy_type) and the memory they work on. The learner
+ * calls the operations and knows no policy by name, so that firmware links the one it uses.
+ * policies.h lists the policies of the library; docs/design.md shows how to write one.
  */
-#ifndef GRRL_POLICY_H
-#define GRRL_POLICY_H
+#ifndef GRRL_LEARNER_POLICY_H
+#define GRRL_LEARNER_POLICY_H
 
 #include "grrl/base/api.h"
+#include "grrl/base/io.h"
 #include "grrl/base/random.h"
-#include "grrl/learner/cases/case_base.h"
-#include "grrl/learner/relational_q/experience.h"
+#include "grrl/perception/perception.h"
+#include "grrl/structure/graph.h"
 
 GRRL_API_BEGIN
 
-enum grrl_policy_kind { GRRL_POLICY_LEARN, GRRL_POLICY_PAPER, GRRL_POLICY_RANDOM };
-
-/* Every parameter of learning. Fill with grrl_policy_config_default, then change what differs. */
-struct grrl_policy_config {
-    enum grrl_policy_kind kind;    /* GRRL_POLICY_LEARN */
-    struct grrl_case_config cases; /* of GRRL_POLICY_LEARN; what follows is the paper's */
-    float alpha;                   /* learning rate, (0, 1]; 0.3 */
-    float gamma;                   /* discount, [0, 1); 0.1 */
-    float beta;                    /* exploration, >= 0; the paper's 2 */
-    float z;                       /* Interval Estimation: bound = value + z sd / sqrt(n); 0.25 */
-    float prior_sd;                /* sd assumed for one target, weighs as one sample; 1 */
-    struct grrl_recall_config recall;
-    float trial_reward; /* with any policy: what the end of a trial adds to the reward, >= 0; 1 */
+/* What a policy sees of the world: what perception estimates, now. */
+struct grrl_view {
+    const struct grrl_perception *perception;
+    const struct grrl_model
+        *model; /* of it, with one body at least when there is a choice to make */
+    const struct grrl_graph *state; /* of the model: vertex i is body i */
+    float large_m;                  /* length from which a link is large */
 };
 
 enum grrl_choice_reason {
-    GRRL_CHOICE_RANDOM,  /* the random policy */
-    GRRL_CHOICE_EXPLORE, /* an action without experience (of its very context) */
-    GRRL_CHOICE_EXPLOIT, /* the highest upper bound, with experience */
-    GRRL_CHOICE_FOREIGN  /* somebody else's choice, adopted */
+    GRRL_CHOICE_RANDOM,  /* any action, whatever is known */
+    GRRL_CHOICE_EXPLORE, /* an action without experience (for cases: in exactly this context) */
+    GRRL_CHOICE_EXPLOIT, /* the best action, from experience */
+    GRRL_CHOICE_ADOPTED, /* chosen by somebody else */
+    GRRL_CHOICE_RULE     /* by a rule that does not learn */
 };
 
-/* A choice and why. */
+/* What an estimate comes from. */
+enum grrl_source_kind {
+    GRRL_SOURCE_NONE,         /* nothing is known of the action */
+    GRRL_SOURCE_EXACT,        /* an experience with the same structure and properties */
+    GRRL_SOURCE_RELAXED,      /* the same structure, some properties ignored */
+    GRRL_SOURCE_SUBSTRUCTURE, /* one structure contains the other */
+    GRRL_SOURCE_CASES /* the mean over all cases; index and distance are the closest one's */
+};
+
+struct grrl_source {
+    uint8_t kind; /* enum grrl_source_kind */
+    uint8_t
+        distance;   /* links and joints that differ; for cases: parts of the context that differ */
+    uint32_t index; /* of the experience or case in its store; GRRL_NO_ENTRY without one */
+};
+
+#define GRRL_NO_ENTRY UINT32_MAX
+
+/* An action of the state, and why. */
 struct grrl_choice {
-    uint8_t link; /* vertex of the state's graph */
-    uint8_t direction;
-    uint8_t reason;                /* enum grrl_choice_reason */
-    struct grrl_recall_entry from; /* the experience behind it, if any */
-    uint32_t closest_case;         /* the case most like it, or GRRL_NO_CASE; LEARN */
-    uint8_t mismatches;            /* parts of the context in which that case differs */
-    float value;                   /* its estimate and bounds; PAPER: 0 without experience */
-    float lower;
+    uint8_t link;      /* a vertex of the state */
+    uint8_t direction; /* an index into grrl_direction_deg */
+    uint8_t reason;    /* enum grrl_choice_reason */
+    struct grrl_source source;
+    float value; /* estimated reward, or Q value; 0 without a source */
+    float lower; /* its confidence bounds */
     float upper;
-    float phi; /* share of the state's actions with experience (LEARN: of their very context) */
+    float phi; /* share of the state's actions with experience (for cases: in exactly their context)
+                */
 };
 
-/* The contexts of all actions of a state: action[link][direction]. */
-struct grrl_contexts {
-    uint8_t n_links;
-    struct grrl_context action[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
+/* What came of a choice. */
+struct grrl_outcome {
+    struct grrl_view view; /* after the push */
+    struct grrl_choice choice;
+    uint16_t body_number; /* of the link that was pushed */
+    float reward;         /* links and joints revealed; at the trial's end also its reward */
+    bool ended;           /* the trial ended, and nothing follows */
 };
 
-void grrl_policy_config_default(struct grrl_policy_config *config);
+/* What a policy learned from an outcome. */
+struct grrl_update {
+    float reward;
+    float target;   /* what the estimate moved towards: the reward, or r + gamma max Q(s', a') */
+    uint32_t index; /* the entry updated, or GRRL_NO_ENTRY */
+};
 
-/* The most that beta, z, prior_sd and trial_reward may be: far beyond use, far from overflow. */
-#define GRRL_POLICY_MOST 1000.0f
+/* How full a policy's memory is. */
+struct grrl_usage {
+    uint32_t n;
+    uint32_t capacity;
+    uint32_t evictions;
+};
 
-/* GRRL_ERR_ARGUMENT for a parameter outside its range; *field, if not NULL, names it. */
-GRRL_MUST_USE enum grrl_status grrl_policy_config_check(const struct grrl_policy_config *config,
-                                                        const char **field);
+/* A number in a policy's configuration that a user may set by name. */
+struct grrl_parameter {
+    const char *name;  /* "alpha" */
+    const char *help;  /* "learning rate" */
+    const char *range; /* "a number above 0 to 1" */
+    size_t offset;     /* of the float in the configuration */
+};
 
-/* The bounds of an entry: value +- z sd / sqrt(n), sd with one prior sample of prior_sd. */
-void grrl_policy_bounds(const struct grrl_policy_config *config, const struct grrl_q *q,
-                        float *lower, float *upper);
+/* The most bytes of a configuration, so that programs can hold any. */
+enum { GRRL_POLICY_CONFIG_BYTES = 128 };
 
-/* LEARN: chooses among the actions of a state of contexts->n_links >= 1 links. Ties are broken at
- * random. Cost: an estimate for each action. */
-void grrl_policy_choose_by_cases(const struct grrl_policy_config *config,
-                                 const struct grrl_case_base *base,
-                                 const struct grrl_contexts *contexts, struct grrl_random *random,
-                                 struct grrl_choice *choice);
+/*
+ * The operations of a policy. `self` is its memory. An operation that is NULL does nothing; name,
+ * text, bytes, init and choose are required.
+ */
+struct grrl_policy_type {
+    const char *name;    /* for command lines, at most GRRL_POLICY_NAME_BYTES with its zero */
+    const char *text;    /* one line for --help */
+    const char *entries; /* what it stores: "cases"; NULL: it does not learn */
 
-/* LEARN: fills in what is expected of choice->link and choice->direction. */
-void grrl_policy_explain_by_cases(const struct grrl_policy_config *config,
-                                  const struct grrl_case_base *base,
-                                  const struct grrl_contexts *contexts, struct grrl_choice *choice);
+    /* its configuration; parameters and config_bytes may be 0 */
+    const struct grrl_parameter *parameters;
+    size_t n_parameters;
+    size_t config_bytes;
+    void (*config_default)(void *config);
+    /* GRRL_ERR_ARGUMENT for a value out of range; *field, if not NULL, names it */
+    enum grrl_status (*config_check)(const void *config, const char **field);
 
-/* PAPER and RANDOM: chooses among the actions of a state of recall->n_links >= 1 links. Ties are
- * broken at random. */
-void grrl_policy_choose(const struct grrl_policy_config *config,
-                        const struct grrl_experience_store *store, const struct grrl_recall *recall,
-                        struct grrl_random *random, struct grrl_choice *choice);
+    /* bytes of memory for `capacity` entries, aligned for any type */
+    size_t (*bytes)(uint32_t capacity);
+    /* prepares that memory. config NULL: the default. GRRL_ERR_ARGUMENT */
+    enum grrl_status (*init)(void *self, uint32_t capacity, const void *config);
 
-/* PAPER and RANDOM: fills in what is known of choice->link and choice->direction: from, value,
- * lower, upper, phi. */
-void grrl_policy_explain(const struct grrl_policy_config *config,
-                         const struct grrl_experience_store *store,
-                         const struct grrl_recall *recall, struct grrl_choice *choice);
+    /* forgets what belongs to one trial; another object or pose follows */
+    void (*begin_trial)(void *self);
+    /* fills in the choice; there is at least one link */
+    void (*choose)(void *self, const struct grrl_view *view, struct grrl_random *random,
+                   struct grrl_choice *choice);
+    /* as choose, for choice->link and choice->direction that somebody else chose */
+    void (*explain)(void *self, const struct grrl_view *view, struct grrl_choice *choice);
+    /* a decision rested on choice->source */
+    void (*used)(void *self, const struct grrl_choice *choice);
+    /* after each push that was chosen or explained; update->reward and ->target are the reward and
+     * update->index is GRRL_NO_ENTRY before */
+    void (*learn)(void *self, const struct grrl_outcome *outcome, struct grrl_update *update);
+    struct grrl_usage (*usage)(const void *self);
+    /* forgets all that was learned */
+    void (*clear)(void *self);
+    /* what was learned as bytes. GRRL_ERR_IO */
+    enum grrl_status (*save)(const void *self, const struct grrl_io *io);
+    /* replaces what was learned; statuses as of grrl_learner_load_torn. Empty after a failure, but
+     * after GRRL_ERR_IO it holds what was whole, and *lost counts the entries announced beyond */
+    enum grrl_status (*load)(void *self, const struct grrl_io *io, uint32_t *lost);
+};
 
-/* max_a Q(s, a) over the known actions, 0 when none is known. */
-float grrl_policy_best_value(const struct grrl_experience_store *store,
-                             const struct grrl_recall *recall);
+enum { GRRL_POLICY_NAME_BYTES = 16 };
+
+/* A policy at work. */
+struct grrl_policy {
+    const struct grrl_policy_type *type;
+    void *self;
+};
+
+/* A policy of this type in `bytes` bytes of the caller's memory, which must be aligned for any
+ * type. config NULL: the default. GRRL_ERR_FULL: less memory than type->bytes(capacity);
+ * GRRL_ERR_ARGUMENT: a parameter out of range, or no capacity for a policy that learns. */
+GRRL_MUST_USE enum grrl_status grrl_policy_make(const struct grrl_policy_type *type, void *memory,
+                                                size_t bytes, uint32_t capacity, const void *config,
+                                                struct grrl_policy *policy);
+
+/* The source of an estimate that has none. */
+static inline struct grrl_source grrl_no_source(void)
+{
+    struct grrl_source source = {GRRL_SOURCE_NONE, 0, GRRL_NO_ENTRY};
+    return source;
+}
 
 GRRL_API_END
 

@@ -19,6 +19,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_noise_init GRRL_SIZED(grrl_noise_init)
+
 #define GRRL_NOISE_BINS 512
 #define GRRL_NOISE_MIN_SAMPLES 100 /* differences along an axis; two a point in three frames */
 

@@ -27,6 +27,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_perception_init GRRL_SIZED(grrl_perception_init)
+
 /* The points visible at one time: table plane, right-handed, metres. Ids are any numbers that stay
  * with a feature; their order means nothing. */
 struct grrl_frame {
@@ -47,8 +49,8 @@ struct grrl_perception_config {
     float min_slide_m;   /* relative sliding below this supports no joint type; 0.00175 */
     float pivot_scale_m; /* pivots farther than this from their bodies are unlikely; 0.1 */
     float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
-    float
-        slack; /* how much more than noise a split needs, >= 1; 1. Pictures are no exact plane: 4 */
+    float slack; /* how much more than noise a split needs, >= 1; 1. A camera's pictures are no
+                    exact plane: 5 */
     uint8_t min_features;   /* fewer features are no body; 4 */
     bool static_background; /* what is sparse at first sight and never moves is background; true.
                                false: all that is seen may be a body, as from a moving camera */

@@ -18,6 +18,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_graph_clear GRRL_SIZED(grrl_graph_clear)
+
 /* No joint between two links, as an answer of grrl_graph_joint. */
 enum { GRRL_NO_JOINT = -1 };
 

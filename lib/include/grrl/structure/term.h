@@ -2,8 +2,8 @@
  * term.h: relational terms in fixed memory (paper, section III).
  *
  *   link       L(p1, .., pk, name), k >= 0, or a bare name
- *   name       f3 (a grounding set of features), v3 (a variable), l3 (a link by name), lb
- *              (background)
+ *   name       f3 (a grounding set of features), v3 (a variable), l3 (a link by number), lb
+ *              (background), or any other identifier: blade1, Left
  *   property   an atom such as s (small) or l (large), a variable v3, or _ for none; its place is
  *              its meaning: the first property is the size
  *   relation   R(x, y, ..) revolute, P(x, y, ..) prismatic, D(x, y, ..) disconnected, n >= 2;
@@ -11,6 +11,11 @@
  *   and        x & y & ..
  *   action     A(link, direction), the direction one of 0, 45, 90, 180, 225, 270 degrees; it
  *              stands alone
+ *
+ * An identifier is a letter followed by letters, digits and underscores, shorter than
+ * GRRL_SYMBOL_BYTES. Its place says what it is. The last word in L(..) is the name, as is a word
+ * without L(..); the words before it are properties: L(s, l) is a small link named l, L(s) and s
+ * are a link named s. A letter is a relation only before '(': R(R, P) joins the links R and P.
  *
  * A joint connects the link written last in its first argument with the link written first in each
  * further argument. graph.h turns a term into the graph this describes, and back.
@@ -31,6 +36,8 @@
 
 GRRL_API_BEGIN
 
+#define grrl_term_store_init GRRL_SIZED(grrl_term_store_init)
+
 typedef uint16_t grrl_term;
 
 enum grrl_term_kind {
@@ -44,13 +51,20 @@ enum grrl_term_kind {
 
 enum grrl_name_kind {
     GRRL_NAME_NONE = 0,
-    GRRL_NAME_LINK,      /* l3 */
-    GRRL_NAME_FEATURES,  /* f3 */
-    GRRL_NAME_VARIABLE,  /* v3 */
-    GRRL_NAME_BACKGROUND /* lb */
+    GRRL_NAME_LINK,       /* l3 */
+    GRRL_NAME_FEATURES,   /* f3 */
+    GRRL_NAME_VARIABLE,   /* v3 */
+    GRRL_NAME_BACKGROUND, /* lb */
+    GRRL_NAME_SYMBOL      /* blade1 */
 };
 
-/* Who a link is. The number is 0 for the background. */
+/* Different identifiers that a store can know as names: those of two structures to be matched. */
+enum { GRRL_MAX_NAMES = 2 * GRRL_MAX_LINKS };
+
+/* A name as text with its zero: an identifier, or f65535. */
+enum { GRRL_NAME_BYTES = GRRL_SYMBOL_BYTES > 7 ? GRRL_SYMBOL_BYTES : 7 };
+
+/* Who a link is. The number is 0 for the background, and the store's own for an identifier. */
 struct grrl_name {
     uint16_t kind; /* enum grrl_name_kind */
     uint16_t number;
@@ -84,7 +98,9 @@ struct grrl_term_store {
     uint16_t used;
     uint16_t high_water;
     uint8_t n_symbols;
+    uint8_t n_names;
     char symbols[GRRL_MAX_SYMBOLS][GRRL_SYMBOL_BYTES];
+    char names[GRRL_MAX_NAMES][GRRL_SYMBOL_BYTES]; /* apart: names do not number properties */
 };
 
 /* Where a text stopped being a term: byte offset from 0, line and column (in characters) from 1. */
@@ -118,15 +134,28 @@ void grrl_term_release(struct grrl_term_store *store, uint16_t mark);
 const struct grrl_term_node *grrl_term_node_at(const struct grrl_term_store *store, grrl_term term);
 
 /*
- * The number of an atom, added when it is new. An atom is a lower-case letter followed by letters,
- * digits and underscores, shorter than GRRL_SYMBOL_BYTES, and not of the form of a name.
- * GRRL_ERR_SYNTAX, GRRL_ERR_FULL.
+ * The number of an atom, added when it is new and kept until grrl_term_store_init. An atom is an
+ * identifier with a lower-case first letter, not of the form l3, f3, v3 or lb. GRRL_ERR_SYNTAX,
+ * GRRL_ERR_FULL.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_intern(struct grrl_term_store *store, const char *text,
                                                 size_t length, grrl_property *property);
 
 /* The text of an atom, NULL for none or a variable. */
 const char *grrl_term_symbol(const struct grrl_term_store *store, grrl_property property);
+
+/*
+ * The name that an identifier is, added when it is new and kept until grrl_term_store_init.
+ * GRRL_ERR_SYNTAX, also for the forms l3, f3, v3 and lb, whose struct needs no store;
+ * GRRL_ERR_FULL at GRRL_MAX_NAMES.
+ */
+GRRL_MUST_USE enum grrl_status grrl_term_intern_name(struct grrl_term_store *store,
+                                                     const char *text, size_t length,
+                                                     struct grrl_name *name);
+
+/* Writes a name of this store as a term has it, "?" for one that is none. Returns text. */
+const char *grrl_term_name_text(const struct grrl_term_store *store, struct grrl_name name,
+                                char text[GRRL_NAME_BYTES]);
 
 /* properties may be NULL when n is 0; "none" at the last places is left away. */
 GRRL_MUST_USE enum grrl_status grrl_term_make_link(struct grrl_term_store *store,

@@ -1,7 +1,9 @@
+/* case_base.c: kernel regression over the rewards met in contexts. */
 #include "grrl/learner/cases/case_base.h"
 
 #include <string.h>
 
+#include "base/range.h"
 #include "grrl/base/geometry.h"
 
 /* Nothing is impossible, whatever the rewards met. */
@@ -22,35 +24,19 @@ void grrl_case_config_default(struct grrl_case_config *config)
                                         .parts = GRRL_ALL_CONTEXT_PARTS};
 }
 
-/* Written so that a NaN is in no range. */
-static bool is_within(float x, float low, float high)
-{
-    return x >= low && x <= high;
-}
-
 enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, const char **field)
 {
-    const struct {
-        const char *name;
-        bool fine;
-    } checks[] = {
-        {"cases.prior", is_within(config->prior, -GRRL_MAX_REWARD, GRRL_MAX_REWARD)},
-        {"cases.prior_weight", is_within(config->prior_weight, 0.001f, GRRL_MAX_REWARD)},
-        {"cases.mismatch", is_within(config->mismatch, 0.0f, 1.0f)},
-        {"cases.bound", is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
-        {"cases.confidence", is_within(config->confidence, 0.0f, GRRL_MAX_REWARD)},
-        {"cases.present", is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
-        {"cases.memory", config->memory >= 1},
-        {"cases.parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
+    const struct grrl_range_check checks[] = {
+        {"prior", grrl_is_within(config->prior, -GRRL_MAX_REWARD, GRRL_MAX_REWARD)},
+        {"prior_weight", grrl_is_within(config->prior_weight, 0.001f, GRRL_MAX_REWARD)},
+        {"mismatch", grrl_is_within(config->mismatch, 0.0f, 1.0f)},
+        {"bound", grrl_is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
+        {"confidence", grrl_is_within(config->confidence, 0.0f, GRRL_MAX_REWARD)},
+        {"present", grrl_is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
+        {"memory", config->memory >= 1},
+        {"parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
     };
-    for (unsigned i = 0; i < sizeof checks / sizeof checks[0]; i++) {
-        if (!checks[i].fine) {
-            if (field != NULL)
-                *field = checks[i].name;
-            return GRRL_ERR_ARGUMENT;
-        }
-    }
-    return GRRL_OK;
+    return grrl_range_first(checks, sizeof checks / sizeof checks[0], field);
 }
 
 void grrl_cases_init(struct grrl_case_base *base, struct grrl_case *cases, uint32_t capacity)

@@ -1,8 +1,10 @@
+/* case_file.c: the case base as bytes. */
 #include <string.h>
 
 #include "base/record.h"
 #include "grrl/base/geometry.h"
 #include "grrl/learner/cases/case_base.h"
+#include "learner/legacy_store.h"
 
 /* The layout is described in case_base.h. */
 enum {
@@ -52,8 +54,16 @@ static enum grrl_status read_header(const struct grrl_case_base *base, struct gr
 {
     if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
-    if (memcmp(record->bytes, magic, sizeof magic) != 0)
-        return GRRL_ERR_FORMAT;
+    if (memcmp(record->bytes, magic, sizeof magic) != 0) {
+        enum grrl_status status =
+            grrl_legacy_skip_experiences(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES);
+        if (status != GRRL_OK)
+            return status;
+        if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
+            return GRRL_ERR_IO;
+        if (memcmp(record->bytes, magic, sizeof magic) != 0)
+            return GRRL_ERR_CORRUPT;
+    }
     record->n = sizeof magic;
     bool known = grrl_record_take(record, 2) == FILE_VERSION;
     known = grrl_record_take(record, 1) == GRRL_CONTEXT_PARTS && known;

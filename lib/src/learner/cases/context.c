@@ -1,3 +1,4 @@
+/* context.c: what surrounds a link, and what was tried on it, in a few small numbers. */
 #include "grrl/learner/cases/context.h"
 
 #include <string.h>
@@ -88,10 +89,10 @@ void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_
     }
 }
 
-void grrl_attempts_add(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
-                       uint8_t body, uint8_t direction)
+void grrl_attempts_add(struct grrl_trial_attempts *attempts, uint16_t body_number,
+                       uint8_t direction)
 {
-    struct grrl_attempts *link = find(attempts, model->body[body].number);
+    struct grrl_attempts *link = find(attempts, body_number);
     if (link != NULL && link->tried[direction] < UINT8_MAX)
         link->tried[direction]++;
 }

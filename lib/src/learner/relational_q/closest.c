@@ -1,3 +1,4 @@
+/* closest.c: the closest stored states, in order, in a fixed number of places. */
 #include "learner/relational_q/closest.h"
 
 void grrl_closest_clear(struct grrl_closest *closest, unsigned most)

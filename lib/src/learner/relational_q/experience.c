@@ -1,3 +1,4 @@
+/* experience.c: the store: hash tables, updates and eviction. */
 #include "learner/relational_q/experience_private.h"
 
 #include <assert.h>

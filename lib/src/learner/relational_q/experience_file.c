@@ -1,12 +1,20 @@
+/* experience_file.c: the experience store as bytes. */
 #include <string.h>
 
 #include "base/bits.h"
 #include "base/record.h"
 #include "grrl/base/geometry.h"
+#include "learner/legacy_store.h"
 #include "learner/relational_q/experience_private.h"
 
 /* The layout is described in experience.h. */
-enum { FILE_VERSION = 2, HEADER_BYTES = 24, LINK_BYTES = 16, EXPERIENCE_BYTES = 26 };
+enum {
+    FILE_VERSION = 3,
+    OLD_VERSION = 2,
+    HEADER_BYTES = 24,
+    LINK_BYTES = 16,
+    EXPERIENCE_BYTES = 26
+};
 
 _Static_assert(GRRL_RECORD_BYTES >= 1 + LINK_BYTES * GRRL_MAX_LINKS &&
                    (int)GRRL_RECORD_BYTES >= (int)EXPERIENCE_BYTES &&
@@ -59,6 +67,7 @@ struct header {
     uint32_t n_states;
     uint32_t n_experiences;
     uint32_t clock;
+    bool is_old; /* a section of cases follows */
 };
 
 static enum grrl_status read_header(const struct grrl_experience_store *store,
@@ -67,9 +76,11 @@ static enum grrl_status read_header(const struct grrl_experience_store *store,
     if (grrl_record_read(record, HEADER_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
     if (memcmp(record->bytes, magic, sizeof magic) != 0)
-        return GRRL_ERR_FORMAT;
+        return grrl_legacy_is_cases(record->bytes) ? GRRL_ERR_POLICY : GRRL_ERR_FORMAT;
     record->n = sizeof magic;
-    if (grrl_record_take(record, 2) != FILE_VERSION)
+    uint64_t version = grrl_record_take(record, 2);
+    header->is_old = version == OLD_VERSION;
+    if (version != FILE_VERSION && !header->is_old)
         return GRRL_ERR_VERSION;
     bool fits = grrl_record_take(record, 1) == GRRL_MAX_PROPERTIES;
     fits = grrl_record_take(record, 1) == GRRL_DIRECTIONS && fits;
@@ -187,7 +198,7 @@ static enum grrl_status read_all(struct grrl_experience_store *store, const stru
         status = read_experience(store, &record, header->clock);
     for (uint32_t i = 0; status == GRRL_OK && i < store->n_states; i++)
         status = store->states[i].experiences > 0 ? GRRL_OK : GRRL_ERR_CORRUPT;
-    return status;
+    return status == GRRL_OK && header->is_old ? grrl_legacy_skip_cases(io) : status;
 }
 
 static void drop_unused_states(struct grrl_experience_store *store)

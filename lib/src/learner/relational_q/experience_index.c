@@ -1,3 +1,4 @@
+/* experience_index.c: stored states by their numbers of links and joints. */
 #include <assert.h>
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* experience_recall.c: the closest experience for each action of a state. */
 #include <string.h>
 
 #include "base/bits.h"

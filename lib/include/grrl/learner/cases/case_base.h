@@ -25,8 +25,8 @@
 #define GRRL_CASE_BASE_H
 
 #include "grrl/base/api.h"
+#include "grrl/base/io.h"
 #include "grrl/learner/cases/context.h"
-#include "grrl/learner/relational_q/experience.h"
 
 GRRL_API_BEGIN
 

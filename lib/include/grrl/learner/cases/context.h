@@ -58,9 +58,9 @@ struct grrl_trial_attempts {
 void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
                         float large_m);
 
-/* Counts a push of body `body` (an index) of the model last looked at. */
-void grrl_attempts_add(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
-                       uint8_t body, uint8_t direction);
+/* Counts a push of the body with this number in the model last looked at. */
+void grrl_attempts_add(struct grrl_trial_attempts *attempts, uint16_t body_number,
+                       uint8_t direction);
 
 /* The contexts of all pushes of one body of the model last looked at, by direction.
  * GRRL_ERR_ARGUMENT: no such body. Cost: linear in joints and bodies. */

@@ -22,12 +22,15 @@
 #include <stddef.h>
 
 #include "grrl/base/api.h"
+#include "grrl/base/config.h"
 #include "grrl/base/io.h"
 #include "grrl/structure/canonical.h"
 #include "grrl/structure/graph.h"
 #include "grrl/structure/match.h"
 
 GRRL_API_BEGIN
+
+#define grrl_experience_init GRRL_SIZED(grrl_experience_init)
 
 /* Q statistics of one experience. */
 struct grrl_q {
@@ -73,11 +76,6 @@ struct grrl_experience_row {
     struct grrl_paths paths;
     uint32_t state;
 };
-
-/* Cells of an index: states with the same numbers of links and joints of each type share one. */
-#ifndef GRRL_EXPERIENCE_CELLS
-#define GRRL_EXPERIENCE_CELLS 1024
-#endif
 
 /* An index of a store: the rows of all states, those of a cell side by side. */
 struct grrl_experience_index {
@@ -128,17 +126,6 @@ struct grrl_recall {
     uint8_t n_links;
     struct grrl_recall_entry entry[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
 };
-
-/* The most states that one recall may search for sub-structures; five bytes of stack each. */
-#ifndef GRRL_RECALL_STATES
-#define GRRL_RECALL_STATES 512
-#endif
-
-/* Search steps that one recall may spend on sub-structures, over all states: a bound of some
- * milliseconds on a PC. What is left out is the farthest. */
-#ifndef GRRL_RECALL_STEPS
-#define GRRL_RECALL_STEPS 500000
-#endif
 
 /* How far retrieval may reach. */
 struct grrl_recall_config {

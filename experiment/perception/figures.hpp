@@ -1,0 +1,53 @@
+/* figures.hpp: what many trials add up to, as a table, as CSV and as a picture. */
+#ifndef GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
+#define GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "statistics.hpp"
+#include "trial.hpp"
+
+namespace grrl_experiment::perception
+{
+
+/* The trials of one object at one noise level, or of all objects together. */
+struct Group {
+    std::string object;
+    double noise = 1.0;
+    std::vector<TrialResult> trials;
+};
+
+/* In percent; below 0: there is nothing to tell from. */
+struct Figures {
+    double wrong_joint;
+    double false_split;
+    double wrong;
+    double missed;
+    double misplaced;
+    double calibration;
+    double exact_in_six;
+    double exact_when_moved;
+    double ended_exact;
+};
+
+struct Pushes {
+    Mean count;    /* over the trials */
+    double at_cap; /* percent */
+    double update_ms;
+};
+
+Tally sum(const Group &group, Method method);
+Figures figures(const Tally &tally, size_t trials);
+Pushes pushes(const Group &group);
+
+void print_table(std::FILE *file, const std::vector<Group> &groups);
+void print_csv(std::FILE *file, const std::vector<Group> &groups);
+
+/* False: gnuplot is not there or fails. */
+bool draw_svg(const std::string &path, const std::vector<Group> &groups);
+
+} // namespace grrl_experiment::perception
+
+#endif

@@ -1,0 +1,25 @@
+/* greedy_policy.c: the policy `greedy`: as `learn`, but it takes the best estimate, not the highest
+ * bound. The worked example of docs/design.md. */
+#include "learner/cases/learn_operations.h"
+
+static void config_default(void *config)
+{
+    struct grrl_case_config *cases = config;
+    grrl_case_config_default(cases);
+    cases->bound = 0.0f;
+}
+
+static enum grrl_status init(void *self, uint32_t capacity, const void *config)
+{
+    struct grrl_case_config greedy;
+    config_default(&greedy);
+    return grrl_learn_init(self, capacity, config != NULL ? config : &greedy);
+}
+
+const struct grrl_policy_type grrl_policy_greedy = {
+    .name = "greedy",
+    .text = "as learn, but the best estimate, without a bound",
+    .config_default = config_default,
+    .init = init,
+    GRRL_LEARN_OPERATIONS,
+};

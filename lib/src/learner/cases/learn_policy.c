@@ -1,0 +1,164 @@
+/* learn_policy.c: the policy `learn`: kernel regression over cases, upper confidence bound. */
+#include "grrl/learner/cases/learn_policy.h"
+
+#include <assert.h>
+#include <string.h>
+
+#include "learner/cases/learn_operations.h"
+
+_Static_assert(sizeof(struct grrl_case_config) <= GRRL_POLICY_CONFIG_BYTES, "a configuration");
+_Static_assert(sizeof(struct grrl_learn_policy) % _Alignof(struct grrl_case) == 0,
+               "the cases follow");
+
+void grrl_learn_config_default(void *config)
+{
+    grrl_case_config_default(config);
+}
+
+enum grrl_status grrl_learn_config_check(const void *config, const char **field)
+{
+    return grrl_case_config_check(config, field);
+}
+
+size_t grrl_learn_bytes(uint32_t capacity)
+{
+    return GRRL_LEARN_POLICY_BYTES((size_t)capacity);
+}
+
+enum grrl_status grrl_learn_init(void *self, uint32_t capacity, const void *config)
+{
+    struct grrl_learn_policy *policy = self;
+    memset(policy, 0, sizeof *policy);
+    if (config != NULL)
+        policy->config = *(const struct grrl_case_config *)config;
+    else
+        grrl_case_config_default(&policy->config);
+    grrl_cases_init(&policy->cases, (struct grrl_case *)(void *)(policy + 1), capacity);
+    return grrl_case_config_check(&policy->config, NULL);
+}
+
+void grrl_learn_begin_trial(void *self)
+{
+    struct grrl_learn_policy *policy = self;
+    memset(&policy->attempts, 0, sizeof policy->attempts);
+    memset(&policy->contexts, 0, sizeof policy->contexts);
+    grrl_cases_begin_trial(&policy->cases, &policy->config);
+}
+
+static void describe_actions(struct grrl_learn_policy *policy, const struct grrl_view *view)
+{
+    grrl_attempts_look(&policy->attempts, view->model, view->large_m);
+    policy->contexts.n_links = view->model->n_bodies;
+    for (uint8_t i = 0; i < view->model->n_bodies; i++) {
+        enum grrl_status status = grrl_context_of(&policy->attempts, view->model, view->large_m, i,
+                                                  policy->contexts.action[i]);
+        assert(status == GRRL_OK); /* there is such a body */
+        (void)status;
+    }
+}
+
+static void set_estimate(struct grrl_choice *choice, const struct grrl_estimate *estimate)
+{
+    choice->source = grrl_no_source();
+    if (estimate->closest != GRRL_NO_CASE)
+        choice->source = (struct grrl_source){.kind = GRRL_SOURCE_CASES,
+                                              .distance = estimate->mismatches,
+                                              .index = estimate->closest};
+    choice->value = estimate->value;
+    choice->lower = estimate->lower;
+    choice->upper = estimate->upper;
+}
+
+/* Whether there is a case of exactly this context. */
+static bool is_met(const struct grrl_estimate *estimate)
+{
+    return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
+}
+
+void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_random *random,
+                       struct grrl_choice *choice)
+{
+    struct grrl_learn_policy *policy = self;
+    describe_actions(policy, view);
+    *choice = (struct grrl_choice){.reason = GRRL_CHOICE_EXPLORE};
+    uint32_t equals = 0;
+    unsigned met = 0;
+    float best = 0.0f;
+    for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
+            struct grrl_estimate estimate;
+            grrl_cases_estimate(&policy->cases, &policy->config,
+                                &policy->contexts.action[link][direction], &estimate);
+            met += is_met(&estimate);
+            if (equals == 0 || estimate.upper > best) {
+                equals = 0;
+                best = estimate.upper;
+            }
+            /* the kth of equals takes over with probability 1 / k */
+            if (estimate.upper == best && grrl_random_below(random, ++equals) == 0) {
+                choice->link = link;
+                choice->direction = direction;
+                choice->reason = is_met(&estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
+                set_estimate(choice, &estimate);
+            }
+        }
+    }
+    choice->phi = (float)met / (float)(policy->contexts.n_links * GRRL_DIRECTIONS);
+}
+
+void grrl_learn_explain(void *self, const struct grrl_view *view, struct grrl_choice *choice)
+{
+    struct grrl_learn_policy *policy = self;
+    describe_actions(policy, view);
+    unsigned met = 0;
+    for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
+            struct grrl_estimate estimate;
+            grrl_cases_estimate(&policy->cases, &policy->config,
+                                &policy->contexts.action[link][direction], &estimate);
+            met += is_met(&estimate);
+            if (link == choice->link && direction == choice->direction)
+                set_estimate(choice, &estimate);
+        }
+    }
+    choice->phi = (float)met / (float)(policy->contexts.n_links * GRRL_DIRECTIONS);
+}
+
+void grrl_learn_learn(void *self, const struct grrl_outcome *outcome, struct grrl_update *update)
+{
+    struct grrl_learn_policy *policy = self;
+    const struct grrl_choice *choice = &outcome->choice;
+    grrl_attempts_add(&policy->attempts, outcome->body_number, choice->direction);
+    update->index = grrl_cases_learn(&policy->cases, &policy->config,
+                                     &policy->contexts.action[choice->link][choice->direction],
+                                     outcome->reward);
+}
+
+struct grrl_usage grrl_learn_usage(const void *self)
+{
+    const struct grrl_case_base *cases = &((const struct grrl_learn_policy *)self)->cases;
+    return (struct grrl_usage){cases->n, cases->capacity, cases->evictions};
+}
+
+void grrl_learn_clear(void *self)
+{
+    grrl_cases_clear(&((struct grrl_learn_policy *)self)->cases);
+}
+
+enum grrl_status grrl_learn_save(const void *self, const struct grrl_io *io)
+{
+    return grrl_cases_save(&((const struct grrl_learn_policy *)self)->cases, io);
+}
+
+enum grrl_status grrl_learn_load(void *self, const struct grrl_io *io, uint32_t *lost)
+{
+    return grrl_cases_load_torn(&((struct grrl_learn_policy *)self)->cases, io, lost);
+}
+
+const struct grrl_policy_type grrl_policy_learn = {
+    .name = "learn",
+    .text = "a contextual bandit over cases: the highest upper confidence bound",
+    .config_default = grrl_learn_config_default,
+    .init = grrl_learn_init,
+    GRRL_LEARN_OPERATIONS,
+};

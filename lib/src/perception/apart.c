@@ -1,0 +1,189 @@
+/*
+ * apart.c: whether two bodies moved apart, by how far and by what it costs to take them for one.
+ */
+#include "perception/perception_internal.h"
+
+/* Of the range of a relative motion: over ten rests noise ranges over 3.1 standard deviations in
+ * the mean, and over more than 5 in 15 of 1,000 cases. */
+#define FAR_SIGMAS 5.0f
+
+/* A motion apart is little below this many times what tells a joint (12 degrees, 10 mm). Features
+ * 50 mm from a joint that turned more are 10 mm or 15 standard deviations off: each tells its link
+ * by itself, and the bodies need neither be cut anew nor fitted as one. */
+#define LITTLE 6.0f
+
+/* Chi squared a keyframe's separate pose must save. Its 3 parameters save 3 by chance, with a
+ * standard deviation of 2.4; 12 is exceeded in 7 of 1000. */
+#define MERGE_FREE 12.0f
+
+/* And how much more in all keyframes together. By chance 48 of them save 0.8; the rest is a margin
+ * for residuals that are not Gaussian. */
+#define MERGE_EVIDENCE 40.0f
+
+/* Of one squared residual in that sum, higher than GRRL_COST_CAP: a point 10 standard deviations
+ * off tells that bodies moved apart, one at 30 tells no more. */
+#define APART_CAP 100.0f
+
+#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+
+static float at_most(float x, float cap)
+{
+    return x < cap ? x : cap;
+}
+
+/* Chi squared that the poses of bodies a and b save in keyframe k over one pose of both. */
+static float saved_apart(const struct grrl_perception *p, const struct grrl_rigid_group *together,
+                         uint8_t a, uint8_t b, uint8_t k)
+{
+    float saved = 0.0f;
+    for (uint16_t i = 0; i < together->n; i++) {
+        uint16_t slot = together->slot[i];
+        uint8_t w = p->keyframe[k].weight[slot];
+        if (w == 0)
+            continue;
+        struct grrl_vec2 point = p->keyframe[k].point[slot];
+        struct grrl_pose own = p->pose[k][p->body_of[slot] == a ? a : b].pose;
+        float scale = 1.0f / grrl_perception_variance(p, w);
+        struct grrl_vec2 in_both = grrl_transform(together->pose[k].pose, together->shape[slot]);
+        float as_one = scale * grrl_vec2_distance2(point, in_both);
+        float alone = scale * grrl_vec2_distance2(point, grrl_transform(own, p->shape[slot]));
+        saved += at_most(as_one, APART_CAP) - at_most(alone, APART_CAP);
+    }
+    return saved;
+}
+
+static float evidence_of(const struct grrl_perception *p, const struct grrl_rigid_group *together,
+                         uint8_t a, uint8_t b)
+{
+    float evidence = 0.0f;
+    float allowance = MERGE_FREE * p->config.slack;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        if (!(p->pose[k][a].weight > 0.0f) || !(p->pose[k][b].weight > 0.0f) ||
+            !(together->pose[k].weight > 0.0f))
+            continue;
+        float saved = saved_apart(p, together, a, b, k);
+        evidence += saved > allowance ? saved - allowance : 0.0f;
+    }
+    return evidence;
+}
+
+void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
+                         struct grrl_rigid_group *together)
+{
+    together->n = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == a || p->body_of[i] == b)
+            together->slot[together->n++] = i;
+    grrl_rigid_fit(p, together->slot, together->n, together->shape, together->pose, 1);
+}
+
+float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct grrl_rigid_group together;
+    grrl_apart_fit_both(p, a, b, &together);
+    return evidence_of(p, &together, a, b);
+}
+
+/* Widens an interval so that x is in it. */
+static void include(float interval[2], float x)
+{
+    interval[0] = x < interval[0] ? x : interval[0];
+    interval[1] = x > interval[1] ? x : interval[1];
+}
+
+/* Pose of b in the frame of a. */
+static struct grrl_pose relative_pose(struct grrl_pose a, struct grrl_pose b)
+{
+    return (struct grrl_pose){grrl_unrotate(a, grrl_vec2_sub(b.p, a.p)), a.c * b.c + a.s * b.s,
+                              a.c * b.s - a.s * b.c};
+}
+
+/* The larger variances of a relative pose so far and in one keyframe. */
+static void include_noise(const struct grrl_perception *p, const struct grrl_perception_pose *a,
+                          const struct grrl_perception_pose *b, struct grrl_vec2 between,
+                          struct grrl_apart_range *range)
+{
+    float noise2 = p->config.noise_m * p->config.noise_m;
+    float turn =
+        noise2 * (1.0f / (a->inertia + LEAST_INERTIA) + 1.0f / (b->inertia + LEAST_INERTIA));
+    float shift = noise2 * (1.0f / a->weight + 1.0f / b->weight) +
+                  0.25f * turn * grrl_vec2_dot(between, between);
+    range->turn_var = turn > range->turn_var ? turn : range->turn_var;
+    range->shift_var = shift > range->shift_var ? shift : range->shift_var;
+}
+
+struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p, uint8_t a,
+                                                 uint8_t b)
+{
+    float turn[2] = {0.0f, 0.0f};
+    float x[2] = {0.0f, 0.0f};
+    float y[2] = {0.0f, 0.0f};
+    struct grrl_pose reference = {0}; /* of b in a, at the first rest */
+    struct grrl_vec2 middle = {0};
+    struct grrl_apart_range range = {0};
+    bool begun = false;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pa = &p->pose[k][a];
+        const struct grrl_perception_pose *pb = &p->pose[k][b];
+        if (!p->keyframe[k].at_rest || !(pa->weight > 0.0f) || !(pb->weight > 0.0f))
+            continue;
+        struct grrl_pose r = relative_pose(pa->pose, pb->pose);
+        if (!begun) {
+            begun = true;
+            reference = r;
+            middle = grrl_vec2_scale(r.p, 0.5f);
+        }
+        include_noise(p, pa, pb, r.p, &range);
+        /* where b takes the point half way between them */
+        struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
+        struct grrl_vec2 d = grrl_vec2_sub(at, middle);
+        include(turn, r.s * reference.c - r.c * reference.s);
+        include(x, d.x);
+        include(y, d.y);
+    }
+    struct grrl_vec2 shifted = {x[1] - x[0], y[1] - y[0]};
+    range.turn = turn[1] - turn[0];
+    range.shift2 = grrl_vec2_dot(shifted, shifted);
+    return range;
+}
+
+/*
+ * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
+ * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
+ * would be tied to either.
+ */
+static bool is_far(const struct grrl_perception *p, const struct grrl_apart_range *range)
+{
+    float least_turn = p->config.min_turn_rad;
+    float least_shift = p->config.min_slide_m;
+    float sigmas2 = FAR_SIGMAS * FAR_SIGMAS;
+    return (range->turn > least_turn && range->turn * range->turn > sigmas2 * range->turn_var) ||
+           (range->shift2 > least_shift * least_shift &&
+            range->shift2 > sigmas2 * range->shift_var);
+}
+
+/* In units of what tells a joint. */
+static bool is_less(const struct grrl_perception *p, const struct grrl_apart_range *range,
+                    float units)
+{
+    float little_turn = units * p->config.min_turn_rad;
+    float little_shift = units * p->config.min_slide_m;
+    return range->turn < little_turn && range->shift2 < little_shift * little_shift;
+}
+
+bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct grrl_apart_range range = grrl_apart_range_between(p, a, b);
+    bool far = is_far(p, &range);
+    if (far && !is_less(p, &range, LITTLE * p->config.slack))
+        return false; /* beyond doubt; a fit of both together costs much more than this */
+    if (!grrl_assign_bodies_may_share(p, a, b))
+        return false;
+    return !far || grrl_apart_evidence(p, a, b) < MERGE_EVIDENCE * p->config.slack;
+}
+
+bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct grrl_apart_range range = grrl_apart_range_between(p, a, b);
+    return is_less(p, &range, LITTLE);
+}

@@ -1,0 +1,164 @@
+/*
+ * assign.c: which body a feature moves with.
+ *
+ * A feature's cost in a body is its squared residuals in units of their variance over all
+ * keyframes, where 2 are expected of each. It goes where it costs least, if that is no more than
+ * noise explains.
+ */
+#include "perception/perception_internal.h"
+
+/* A feature belongs to a body up to this many standard deviations above the cost expected, and 4
+ * more because the chi squared of few keyframes has a longer tail: noise exceeds the limit in one
+ * case of 1,100 with one keyframe, of 3,600 with ten. */
+#define LIMIT_SIGMAS 4.0f
+#define LIMIT_BASE 4.0f
+
+/* Chi squared by which another body must be better than a feature's own, as much as one keyframe is
+ * expected to cost: a feature beside a joint fits both of its links and shall not change sides by
+ * chance. */
+#define OWN_COST 2.0f
+
+/* Chi squared a feature may lose by moving to another body and still be no worse off: four standard
+ * deviations of the two residuals (2) of one keyframe. */
+#define ELSEWHERE_COST 8.0f
+
+/* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
+static float cost_limit(const struct grrl_perception *p, uint16_t n)
+{
+    float limit = 2.0f * (float)n + LIMIT_SIGMAS * grrl_sqrt(4.0f * (float)n) + LIMIT_BASE;
+    return limit * grrl_sqrt(p->config.slack);
+}
+
+bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot)
+{
+    struct grrl_vec2 mean = {0.0f, 0.0f};
+    float weight = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        float w = (float)p->keyframe[k].weight[slot];
+        mean = grrl_vec2_add(mean, grrl_vec2_scale(p->keyframe[k].point[slot], w));
+        weight += w;
+    }
+    uint16_t n = 0;
+    float cost = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        uint8_t w = p->keyframe[k].weight[slot];
+        if (w > 0) {
+            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot],
+                                           grrl_vec2_scale(mean, 1.0f / weight)) /
+                       grrl_perception_variance(p, w);
+            cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
+            n++;
+        }
+    }
+    return n > 0 && cost >= cost_limit(p, n);
+}
+
+bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body)
+{
+    int balance = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body)
+            balance += p->has_moved[i] ? 1 : -1;
+    return balance > 0;
+}
+
+static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
+{
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body && p->blob_of[i] != 0)
+            return p->blob_of[i];
+    return 0;
+}
+
+/* Blobs that lie apart stay apart until motion speaks: what never moved looks rigid with everything
+ * that never moved. */
+static bool may_share(const struct grrl_perception *p, uint8_t blob, bool moved, uint8_t body)
+{
+    uint8_t other = blob_of_body(p, body);
+    return blob == 0 || other == 0 || blob == other ||
+           (moved && grrl_assign_body_has_moved(p, body));
+}
+
+bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return may_share(p, blob_of_body(p, a), grrl_assign_body_has_moved(p, a), b);
+}
+
+/*
+ * Whether a feature strays from its body less than what tells a joint, in the mean. A body bent by
+ * a joint that moved less keeps its features, though their residuals are beyond noise.
+ */
+static bool stays_close(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t body = p->body_of[slot];
+    float limit2 = p->config.min_slide_m * p->config.min_slide_m;
+    float sum = 0.0f;
+    float n = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].weight > 0.0f) {
+            struct grrl_vec2 at = grrl_transform(p->pose[k][body].pose, p->shape[slot]);
+            sum += grrl_vec2_distance2(p->keyframe[k].point[slot], at);
+            n += 1.0f;
+        }
+    }
+    return sum < limit2 * n;
+}
+
+/* What a feature costs in a body beyond what it may; false: it cannot be in it. */
+static bool excess_in(const struct grrl_perception *p, uint16_t slot, uint8_t body, float *excess)
+{
+    bool is_own = body == p->body_of[slot];
+    struct grrl_vec2 local = p->shape[slot];
+    uint16_t n;
+    if (!is_own && (!may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
+                    !grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local)))
+        return false;
+    float cost =
+        grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
+    *excess = cost - cost_limit(p, n) - (is_own ? OWN_COST : 0.0f);
+    return n > 0;
+}
+
+uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t own = p->body_of[slot];
+    uint8_t best = GRRL_FEATURE_NONE;
+    float best_excess = 0.0f; /* over the limit: unassigned */
+    bool is_table = own == GRRL_FEATURE_BACKGROUND && p->blob_of[slot] == 0;
+    for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) { /* the table moves with nothing */
+        float excess;
+        if (excess_in(p, slot, b, &excess) && excess < best_excess) {
+            best = b;
+            best_excess = excess;
+        }
+    }
+    if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, slot))
+        best = own;
+    if (!p->has_moved[slot] && (p->blob_of[slot] == 0 || best == GRRL_FEATURE_NONE))
+        best = GRRL_FEATURE_BACKGROUND;
+    return best;
+}
+
+/*
+ * Whether a feature would be no worse off in some other body. A body of n features follows their
+ * noise with its own pose, which saves it a share of about 3 / (2 n) of each residual.
+ */
+bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own)
+{
+    uint16_t n;
+    uint8_t own = p->body_of[slot];
+    float own_cost = grrl_rigid_cost(p, slot, p->shape[slot], &p->pose[0][own], GRRL_MAX_LINKS,
+                                     GRRL_COST_CAP, &n);
+    float leverage = 1.5f / (float)n_own;
+    float allowed = own_cost + ELSEWHERE_COST +
+                    2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
+    for (uint8_t b = 0; b < p->n_bodies; b++) {
+        struct grrl_vec2 local;
+        if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
+            grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
+            grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, GRRL_COST_CAP, &n) <=
+                allowed)
+            return true;
+    }
+    return false;
+}

@@ -1,0 +1,53 @@
+/*
+ * csv.h: lines and fields of a text of separated values, whoever wrote it.
+ *
+ * Lines end with LF, CRLF or CR. Fields may be quoted as in RFC 4180; a quoted field ends in its
+ * line. Order of calls: grrl_csv_next_line, grrl_csv_find_separator on the header, grrl_csv_split
+ * on each line, grrl_csv_free.
+ */
+#ifndef GRRL_PERCEIVE_CSV_H
+#define GRRL_PERCEIVE_CSV_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "tracks.h"
+
+enum { GRRL_CSV_MAX_FIELDS = 1024 };
+
+/* A field of the line being read, without the blanks and quotes around it. */
+struct grrl_csv_field {
+    char *text;
+    int column; /* of its first character, from 1 */
+};
+
+/* Fill in the first three, zero the rest. */
+struct grrl_csv {
+    FILE *file;
+    const char *path;                /* for the errors */
+    struct grrl_tracks_error *error; /* of the call that failed */
+    size_t line;                     /* the one read last, from 1 */
+    char separator;
+    char *text; /* of that line; changed by grrl_csv_split */
+    size_t capacity;
+    int past_end; /* column behind its last field */
+};
+
+enum grrl_csv_status { GRRL_CSV_LINE, GRRL_CSV_END, GRRL_CSV_BAD };
+
+/* The next line that is not blank, in csv->text. At the end csv->line is the line behind it. */
+enum grrl_csv_status grrl_csv_next_line(struct grrl_csv *csv);
+
+/* The one of comma, semicolon and tab that the line has most of, outside quotes; else a comma. */
+void grrl_csv_find_separator(struct grrl_csv *csv);
+
+/* Cuts csv->text into fields. How many; -1: a quote is not closed, or there are too many. */
+int grrl_csv_split(struct grrl_csv *csv, struct grrl_csv_field *fields);
+
+/* Writes PATH:LINE:COLUMN: TEXT: WHAT into csv->error; text "": none. Always false. */
+bool grrl_csv_fail(struct grrl_csv *csv, int column, const char *what, const char *text);
+
+void grrl_csv_free(struct grrl_csv *csv);
+
+#endif

@@ -1,0 +1,34 @@
+/* adapter.hpp: from the simulator to the library and back: frames one way, pushes the other. */
+#ifndef GRRL_SIM_ADAPTER_HPP
+#define GRRL_SIM_ADAPTER_HPP
+
+#include "grrl/learner/grounding.h"
+#include "grrl/perception/perception.h"
+#include "push.hpp"
+#include "tracker.hpp"
+
+namespace grrl_sim
+{
+
+/* What the learner wants, as the robot takes it. */
+PushCommand command_of(const grrl_push &push);
+
+/* Copies the points of a frame, at most `capacity`. Returns how many. */
+int copy_points(const Frame &frame, int capacity, int32_t *id, float *x_m, float *y_m);
+
+/* The arrays behind a frame of the library. */
+class FrameArrays
+{
+public:
+    /* Valid until the next call. */
+    grrl_frame frame_of(const Frame &frame);
+
+private:
+    int32_t id_[GRRL_MAX_FEATURES];
+    float x_m_[GRRL_MAX_FEATURES];
+    float y_m_[GRRL_MAX_FEATURES];
+};
+
+} // namespace grrl_sim
+
+#endif

@@ -1,0 +1,1 @@
+"""A second world for grrl-agent: an articulated object on a table in MuJoCo, on LCM."""
