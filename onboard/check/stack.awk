@@ -1,7 +1,7 @@
-# The deepest path through the call graphs gcc writes (-fcallgraph-info=su), and every cycle.
+# Finds the deepest path through gcc's call graphs (-fcallgraph-info=su), and every cycle.
 #   awk -f stack.awk -v root=main -v callbacks="a b" *.ci
-# A call through a pointer may reach each of `callbacks`. What has no size, of the C library or in
-# assembly, counts as `unknown` bytes.
+# A call through a pointer may reach each of `callbacks`. Functions of unknown size (C library,
+# assembly) count as `unknown` bytes.
 /^node:/ {
     split($0, part, "\"")
     if (match($0, /[0-9]+ bytes \([a-z,]*\)/)) {
