@@ -204,8 +204,8 @@ void Node::judge(const grrl_model_t &model)
     if (!new_model)
         return;
     trial_.judged_cmd_seq = ack_cmd_seq_;
-    grrl_graph believed;
-    if (structure_of(model, believed) && supervisor_.judge(believed).correct)
+    grrl_graph estimated;
+    if (structure_of(model, estimated) && supervisor_.judge(estimated).correct)
         end_trial(GRRL_TRIAL_T_DISCOVERED);
     else if (pushes_ >= config_.cap)
         end_trial(GRRL_TRIAL_T_CAPPED);

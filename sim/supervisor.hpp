@@ -30,7 +30,7 @@ class Supervisor
 public:
     explicit Supervisor(const grrl_graph &truth) : truth_(truth) {}
 
-    Verdict judge(const grrl_graph &believed) const;
+    Verdict judge(const grrl_graph &estimated) const;
 
 private:
     grrl_graph truth_;

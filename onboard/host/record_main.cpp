@@ -117,11 +117,11 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, int32_t number)
         push(run, world);
         pushes++;
         settle(run, world);
-        grrl_graph believed;
+        grrl_graph estimated;
         const grrl_learner &learner = run.controller->learner;
         grrl_relational_state_of(grrl_perception_model(&learner.perception), learner.config.large_m,
-                                 &believed, nullptr, nullptr);
-        found = supervisor.judge(believed).correct;
+                                 &estimated, nullptr, nullptr);
+        found = supervisor.judge(estimated).correct;
         send(run, ONBOARD_LEARN, found ? 1 : 0, 1);
         expect(run);
     }

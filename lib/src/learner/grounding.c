@@ -79,7 +79,7 @@ static float joint_place(const struct grrl_body *body, const struct grrl_body *n
     return grrl_vec2_dot(grrl_vec2_sub(neighbour->centroid_m, body->centroid_m), body->axis);
 }
 
-static void weigh(const struct grrl_model *model, uint8_t body, struct end *end)
+static void measure_end(const struct grrl_model *model, uint8_t body, struct end *end)
 {
     end->bodies = reach(model, end->bodies, UINT32_C(1) << body);
     end->links = 0;
@@ -120,8 +120,8 @@ static struct grrl_vec2 forward_axis(const struct grrl_model *model, uint8_t bod
         end->bodies |= UINT32_C(1) << other;
         end->first_joint = j < end->first_joint ? j : end->first_joint;
     }
-    weigh(model, body, &ends[0]);
-    weigh(model, body, &ends[1]);
+    measure_end(model, body, &ends[0]);
+    measure_end(model, body, &ends[1]);
     return far_end_holds(&ends[0], &ends[1]) ? self->axis : grrl_vec2_scale(self->axis, -1.0f);
 }
 

@@ -148,11 +148,11 @@ enum grrl_status grrl_graph_from_term(const struct grrl_term_store *store, grrl_
                             .names = names,
                             .edges = edges,
                             .error = error != NULL ? error : &unwanted};
-    struct grrl_name nobody = {GRRL_NAME_NONE, 0};
+    struct grrl_name no_name = {GRRL_NAME_NONE, 0};
     if (!grrl_term_valid(store, term))
-        return reject(&reader, GRRL_ERR_ARGUMENT, nobody, "not a term of this store");
+        return reject(&reader, GRRL_ERR_ARGUMENT, no_name, "not a term of this store");
     if (store->nodes[term].kind == GRRL_TERM_ACTION)
-        return reject(&reader, GRRL_ERR_STRUCTURE, nobody, "an action is not a structure");
+        return reject(&reader, GRRL_ERR_STRUCTURE, no_name, "an action is not a structure");
     grrl_graph_clear(graph);
     struct grrl_walk walk;
     grrl_term_walk_begin(&walk, store, term);

@@ -72,7 +72,7 @@ static void describe_found(const struct parser *parser, size_t at, struct grrl_t
     }
 }
 
-static enum grrl_status refuse(struct parser *parser, size_t at, enum grrl_status status,
+static enum grrl_status reject(struct parser *parser, size_t at, enum grrl_status status,
                                const char *why)
 {
     struct grrl_text message = error_at(parser, at);
@@ -179,7 +179,7 @@ static enum grrl_status read_name(struct parser *parser, size_t from, size_t end
     if (kind != GRRL_NAME_BACKGROUND)
         number = read_number(parser, from + 1, end, UINT16_MAX);
     if (number > UINT16_MAX)
-        return refuse(parser, from, GRRL_ERR_SYNTAX, "the number of a name is at most 65535");
+        return reject(parser, from, GRRL_ERR_SYNTAX, "the number of a name is at most 65535");
     name->kind = (uint16_t)kind;
     name->number = (uint16_t)number;
     return GRRL_OK;
@@ -194,7 +194,7 @@ static enum grrl_status read_property(struct parser *parser, size_t from, size_t
     if (kind == GRRL_NAME_VARIABLE) {
         uint32_t number = read_number(parser, from + 1, end, GRRL_MAX_PROPERTY_VARIABLE);
         if (number > GRRL_MAX_PROPERTY_VARIABLE)
-            return refuse(parser, from, GRRL_ERR_SYNTAX,
+            return reject(parser, from, GRRL_ERR_SYNTAX,
                           "the number of a property variable is at most 127");
         *property = (grrl_property)(GRRL_PROPERTY_VARIABLE + number);
         return GRRL_OK;
@@ -211,7 +211,7 @@ static enum grrl_status read_property(struct parser *parser, size_t from, size_t
     case GRRL_OK:
         return GRRL_OK;
     case GRRL_ERR_FULL:
-        return refuse(parser, from, GRRL_ERR_FULL, "the store has no room for another property");
+        return reject(parser, from, GRRL_ERR_FULL, "the store has no room for another property");
     default:
         return too_long(parser, from, "a property");
     }
@@ -239,7 +239,7 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
         parser->at = end;
         if (accept(parser, ',')) {
             if (n == GRRL_MAX_PROPERTIES)
-                return refuse(parser, from, GRRL_ERR_FULL, "too many properties for one link");
+                return reject(parser, from, GRRL_ERR_FULL, "too many properties for one link");
             enum grrl_status status = read_property(parser, from, end, &properties[n]);
             if (status != GRRL_OK)
                 return status;
@@ -314,7 +314,7 @@ static enum grrl_status read_direction(struct parser *parser, uint8_t *direction
 static enum grrl_status read_action(struct parser *parser, size_t begin, grrl_term *term)
 {
     if (parser->depth > 0 || parser->frames[0].current != 0)
-        return refuse(parser, begin, GRRL_ERR_SYNTAX, "an action cannot be part of another term");
+        return reject(parser, begin, GRRL_ERR_SYNTAX, "an action cannot be part of another term");
     grrl_term link;
     enum grrl_status status =
         read_link_or_name(parser, read_word(parser), "a link as the first argument of A", &link);
@@ -362,7 +362,7 @@ static enum grrl_status read_operand(struct parser *parser, grrl_term *term)
         if (relation_of(word.letter) == GRRL_TERM_AND)
             return read_link_or_name(parser, word, "a link or one of R, P, D, A", term);
         if (parser->depth == GRRL_MAX_TERM_DEPTH)
-            return refuse(parser, word.from, GRRL_ERR_FULL, "relations nest too deeply");
+            return reject(parser, word.from, GRRL_ERR_FULL, "relations nest too deeply");
         struct frame *frame = &parser->frames[++parser->depth];
         memset(frame, 0, sizeof *frame);
         frame->relation = grrl_term_new(parser->store, relation_of(word.letter));
