@@ -1,6 +1,6 @@
-# Rows of the table of one target: what, with the policy learn, with the policy paper, limit, a tab
-# between them; from what stack.awk, size -A and the image say (a file a policy, its name before it
-# as policy=..). The status tells whether all fits.
+# The table rows of one target, separated by tabs: item, with the policy learn, with the policy paper,
+# limit. Reads the output of stack.awk, size -A and the image (one file per policy, preceded by
+# policy=..). The status says whether everything fits.
 function row(what, learn, paper, limit) {
     printf "%s\t%s\t%s\t%s\n", what, learn, paper, limit
     if (limit != "" && (learn + 0 > limit + 0 || paper + 0 > limit + 0))
@@ -33,7 +33,7 @@ END {
         row("  instructions, mean", mean["learn", step], mean["paper", step], "")
         row("  instructions, most", most["learn", step], most["paper", step], "")
     }
-    # Choose and learn together: full stores and states of all links, which a run does not come to.
+    # Choose and learn together, with full stores and states of all links, which a run does not reach.
     row("a decision at full capacity, most", worst["learn"], worst["paper"], 10000000)
     row("entries in use at the end", used["learn", "entries"], used["paper", "entries"],
         256)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# budget.sh FOLDER TARGET: what the image takes, in TARGET.rows, and whether that is too much. Also:
-# nothing from the heap, no printing, no double precision, no recursion. Runs after same_image.sh.
+# budget.sh FOLDER TARGET: writes the image's resource use to TARGET.rows and checks the limits. Also
+# checks: no heap, no printing, no double precision, no recursion. Runs after same_image.sh.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 folder=$1 target=$2

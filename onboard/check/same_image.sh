@@ -1,5 +1,5 @@
 #!/bin/bash
-# same_image.sh FOLDER TARGET: the recorded runs on an emulated controller.
+# same_image.sh FOLDER TARGET: replays the recorded runs on an emulated controller.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 folder=$1 target=$2

@@ -126,7 +126,7 @@ public:
     Outcome finish()
     {
         int idle = 0;
-        for (int64_t step = 0; !node_->finished() && !node_->agent_is_blind(); step++) {
+        for (int64_t step = 0; !node_->finished() && !node_->agent_has_nothing_to_push(); step++) {
             assert_true(step < 5000000);
             idle = handle() ? 0 : idle + 1;
             /* Time passes only when there is nothing to do: the machine is infinitely fast. */
@@ -149,7 +149,7 @@ public:
         outcome_.agent_rejected = last->agent.counts.rejected;
         outcome_.sim_rejected = node_->rejected();
         outcome_.bus = bus_->counts();
-        outcome_.blind = node_->agent_is_blind();
+        outcome_.blind = node_->agent_has_nothing_to_push();
         return outcome_;
     }
 

@@ -83,7 +83,7 @@ void a_second_agent_learns_nothing_and_changes_nothing(void **)
         assert_same(expected, outcome);
         assert_int_equal(outcome.rival_lessons, 0);
         assert_true(told(outcome, "another agent is obeyed, this one waits"));
-        assert_true(told(outcome, "another agent answers, too"));
+        assert_true(told(outcome, "another agent answers too"));
     }
 }
 

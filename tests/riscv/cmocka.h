@@ -1,6 +1,6 @@
 /*
- * cmocka.h: as much of CMocka's interface as the library's tests use, for machines for which there
- * is no CMocka: it comes compiled for hosts only. A failed assertion ends its test, not the others.
+ * cmocka.h: the part of CMocka's interface that the library's tests use, for machines without
+ * CMocka, which is packaged for hosts only. A failed assertion ends its test, not the others.
  */
 #ifndef CMOCKA_H
 #define CMOCKA_H
