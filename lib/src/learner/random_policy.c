@@ -25,7 +25,7 @@ static void choose(void *self, const struct grrl_view *view, struct grrl_random 
                                    .source = grrl_no_source()};
 }
 
-const struct grrl_policy_type grrl_policy_random = {
+GRRL_POLICY_TYPE grrl_policy_random = {
     .name = "random",
     .text = "every push with equal probability",
     .bytes = bytes,

@@ -143,6 +143,13 @@ struct grrl_policy_type {
 
 enum { GRRL_POLICY_NAME_BYTES = 16 };
 
+/* Opens the definition of a policy's type, so that a shared library exports it. */
+#if defined(__GNUC__)
+#define GRRL_POLICY_TYPE __attribute__((visibility("default"))) const struct grrl_policy_type
+#else
+#define GRRL_POLICY_TYPE const struct grrl_policy_type
+#endif
+
 /* A policy and its memory. */
 struct grrl_policy {
     const struct grrl_policy_type *type;

@@ -16,7 +16,7 @@ static enum grrl_status init(void *self, uint32_t capacity, const void *config)
     return grrl_learn_init(self, capacity, config != NULL ? config : &greedy);
 }
 
-const struct grrl_policy_type grrl_policy_greedy = {
+GRRL_POLICY_TYPE grrl_policy_greedy = {
     .name = "greedy",
     .text = "like learn, but the best estimate, without a bound",
     .config_default = config_default,

@@ -155,7 +155,7 @@ enum grrl_status grrl_learn_load(void *self, const struct grrl_io *io, uint32_t 
     return grrl_cases_load_torn(&((struct grrl_learn_policy *)self)->cases, io, lost);
 }
 
-const struct grrl_policy_type grrl_policy_learn = {
+GRRL_POLICY_TYPE grrl_policy_learn = {
     .name = "learn",
     .text = "a contextual bandit over cases: the highest upper confidence bound",
     .config_default = grrl_learn_config_default,

@@ -292,7 +292,7 @@ static const struct grrl_parameter parameters[] = {
      offsetof(struct grrl_paper_config, z)},
 };
 
-const struct grrl_policy_type grrl_policy_paper = {
+GRRL_POLICY_TYPE grrl_policy_paper = {
     .name = "paper",
     .text = "the paper's learner: closest experience, phi, Interval Estimation",
     .entries = "experiences",
