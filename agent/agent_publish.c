@@ -160,13 +160,21 @@ static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
             grrl_wire_encode_push_command(&command, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
 }
 
+/* Without a supervisor nobody waits for the model, and the agent goes on at once: it goes out with
+ * the next push. */
+static bool unjudged_model(const struct grrl_agent *agent)
+{
+    return agent->trial_id == 0 &&
+           (agent->stage == STAGE_CHOOSING || agent->stage == STAGE_COMMANDED);
+}
+
 void agent_answer(struct grrl_agent *agent)
 {
     if (agent->config.observe)
         return;
     int64_t now = agent_now_us(agent);
     agent->answered_us = now;
-    if (agent->stage == STAGE_JUDGING)
+    if (agent->stage == STAGE_JUDGING || unjudged_model(agent))
         publish_model(agent, now);
     if (agent->stage == STAGE_COMMANDED)
         publish_decision(agent, now);

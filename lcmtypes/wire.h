@@ -24,6 +24,7 @@
 #include "grrl_points_t.h"
 #include "grrl_push_command_t.h"
 #include "grrl_push_status_t.h"
+#include "grrl_stop_t.h"
 #include "grrl_trial_t.h"
 
 #include "grrl/base/api.h"
@@ -92,6 +93,8 @@ bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t 
                                struct grrl_wire_why *why);
 bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
                                    struct grrl_wire_why *why);
+bool grrl_wire_decode_stop(const void *data, uint32_t size, grrl_stop_t *out,
+                           struct grrl_wire_why *why);
 
 /* capacity: bytes at data; GRRL_WIRE_MAX_BYTES is enough for every message. */
 int grrl_wire_encode_points(const grrl_points_t *message, int capacity, uint8_t *data,
@@ -108,6 +111,8 @@ int grrl_wire_encode_decision(const grrl_decision_t *message, int capacity, uint
                               struct grrl_wire_why *why);
 int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capacity, uint8_t *data,
                                   struct grrl_wire_why *why);
+int grrl_wire_encode_stop(const grrl_stop_t *message, int capacity, uint8_t *data,
+                          struct grrl_wire_why *why);
 
 GRRL_API_END
 

@@ -30,6 +30,7 @@ static grrl_push_status_t push_status;
 static grrl_trial_t trial;
 static grrl_decision_t decision;
 static grrl_agent_status_t agent_status;
+static grrl_stop_t stop;
 
 #define FACE(type, variable, message)                                                              \
     static bool decode_##type(const void *data, uint32_t size)                                     \
@@ -48,8 +49,9 @@ FACE(push_status, push_status, push_status)
 FACE(trial, trial, trial)
 FACE(decision, decision, decision)
 FACE(agent_status, agent_status, agent_status)
+FACE(stop, stop, stop)
 
-#define N_TYPES 7
+#define N_TYPES 8
 static struct subject subjects[N_TYPES] = {
     {"points", 0, {0}, decode_points, encode_points},
     {"model", 0, {0}, decode_model, encode_model},
@@ -58,6 +60,7 @@ static struct subject subjects[N_TYPES] = {
     {"trial", 0, {0}, decode_trial, encode_trial},
     {"decision", 0, {0}, decode_decision, encode_decision},
     {"agent_status", 0, {0}, decode_agent_status, encode_agent_status},
+    {"stop", 0, {0}, decode_stop, encode_stop},
 };
 
 static void fill_points(int n)
@@ -125,6 +128,7 @@ static void fill_small(void)
     decision = (grrl_decision_t){.session_id = 43, .trial_id = 1, .cmd_seq = 1, .source_index = -1};
     decision.phi = 0.5f;
     agent_status = (grrl_agent_status_t){.session_id = 43, .received = INT64_MAX};
+    stop = (grrl_stop_t){.session_id = 42, .reason = GRRL_STOP_T_LIMIT};
 }
 
 static int setup(void **state)
