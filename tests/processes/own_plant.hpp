@@ -155,8 +155,9 @@ private:
 
     void send(const char *channel, int size)
     {
-        orderly_ = size > 0 && orderly_ &&
-                   lcm_publish(lcm_, channel, bytes_, static_cast<unsigned>(size)) == 0;
+        bool sent =
+            size > 0 && lcm_publish(lcm_, channel, bytes_, static_cast<unsigned>(size)) == 0;
+        orderly_ = orderly_ && sent;
     }
 
     lcm_t *lcm_;

@@ -176,14 +176,14 @@ void an_agent_gives_way_when_its_robot_moves_for_another(void **)
         plant.frame(clock_us += 33333);
         listener.handle_all();
     }
-    assert_false(grrl_agent_gave_way(&listener.agent()));
+    assert_int_equal(grrl_agent_end(&listener.agent()), GRRL_AGENT_GOES_ON);
     uint32_t cases = grrl_learner_usage(&listener.agent().learner).n;
     plant.obey_rival();
     for (int i = 0; i < 200; i++) {
         plant.frame(clock_us += 33333);
         listener.handle_all();
     }
-    assert_true(grrl_agent_gave_way(&listener.agent()));
+    assert_int_equal(grrl_agent_end(&listener.agent()), GRRL_AGENT_GAVE_WAY);
     assert_int_equal(plant.pushes(), 2);
     assert_int_equal(grrl_learner_usage(&listener.agent().learner).n, cases);
 }
