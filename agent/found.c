@@ -58,7 +58,7 @@ void grrl_found_print(const struct grrl_found *found)
 {
     if (!found->known)
         return;
-    (void)printf("found after %" PRId32 " pushes: %s\n", found->pushes, found->term);
+    (void)printf("found after push %" PRId32 ": %s\n", found->pushes, found->term);
     for (unsigned i = 0; i < found->model.n_joints; i++)
         print_joint(&found->model, &found->model.joint[i]);
 }
