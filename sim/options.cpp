@@ -27,7 +27,8 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
 {
     Options &o = options;
     const grrl_option rows[] = {
-        grrl_option_text("object", "OBJECT", "chain (RPR), term (D(lb, R(l1, l2))) or file; needed",
+        grrl_option_text("object", "OBJECT",
+                         "chain (RPR), term (D(lb, R(l1, l2))), file, or name (wooden-toy); needed",
                          &o.object),
         grrl_option_int("trials", "N", "trials until the end (1)", 1, 1000000, &o.trials),
         grrl_option_int("cap", "N", "pushes after which a trial is given up (100)", 1, 1000000,
