@@ -80,7 +80,9 @@ class Robot:
         stop = grrl.stop_t()
         stop.utime, stop.session_id = int(time.time() * 1e6), self.session
         stop.reason = reason
-        self.bus.publish("GRRL_STOP", stop.encode())
+        for _ in range(3):  # one may get lost
+            self.bus.publish("GRRL_STOP", stop.encode())
+            time.sleep(0.05)
 
 
 class Hinge:
