@@ -92,10 +92,12 @@ float grrl_agent_sureness(const struct grrl_agent *agent, uint8_t *a, uint8_t *b
 {
     const struct grrl_perception *perception = &agent->learner.perception;
     uint8_t n = grrl_perception_model(perception)->n_bodies;
-    float least = n < 2 || agent->config.pair == NULL ? 0.0f : 1.0f;
+    float least = 2.0f; /* above any probability */
     *a = 0;
     *b = 0;
-    for (uint8_t i = 0; i < n && agent->config.pair != NULL; i++) {
+    if (n < 2 || agent->config.pair == NULL)
+        return 0.0f;
+    for (uint8_t i = 0; i < n; i++) {
         for (uint8_t j = (uint8_t)(i + 1u); j < n; j++) {
             struct grrl_pair pair;
             float sure =

@@ -11,6 +11,7 @@ camera that finds points, and an arm. Ctrl-C is the red button.
 
 import math
 import random
+import select
 import signal
 import sys
 import time
@@ -159,11 +160,8 @@ def main():
         robot.frame()
         due = max(due + 1.0 / FRAMES_PER_S, time.monotonic() - 0.1)
         while (left := due - time.monotonic()) > 0 and not pressed:
-            try:
-                bus.handle_timeout(max(1, int(left * 1000)))
-            except OSError:  # so LCM tells of a signal, too
-                if not pressed:
-                    raise
+            if select.select([bus.fileno()], [], [], left)[0]:
+                bus.handle()
     robot.stop(grrl.stop_t.OPERATOR)
 
 

@@ -18,6 +18,8 @@ struct Seen {
     int models = 0;
     int perceived = 0;
     grrl_model model{};
+    uint8_t pair[2] = {0, 0};
+    float sure = 0.0f;
     int learned = 0;
     int ends = 0;
     int commands = 0;
@@ -108,6 +110,7 @@ private:
         case GRRL_AGENT_PERCEIVED:
             seen.perceived++;
             seen.model = *grrl_perception_model(&self->agent_->learner.perception);
+            seen.sure = grrl_agent_sureness(self->agent_.get(), &seen.pair[0], &seen.pair[1]);
             break;
         case GRRL_AGENT_DECIDED:
             seen.decisions.push_back(*event->decision);
@@ -205,6 +208,27 @@ void is_never_sure_of_one_link(void **)
     Scene scene(config, "l1");
     scene.run();
     assert_int_equal(grrl_agent_end(&scene.agent()), GRRL_AGENT_PUSHES_DONE);
+    uint8_t a = 9, b = 9;
+    assert_true(grrl_agent_sureness(&scene.agent(), &a, &b) <= 0.0f);
+    assert_int_equal(a + b, 0);
+}
+
+/* A pair is named, however sure it is. */
+void names_the_pair_it_is_least_sure_of(void **)
+{
+    grrl_agent_config config = defaults();
+    config.most_pushes = 12;
+    Scene scene(config, "RR", PlantMistakes(), 2);
+    for (int i = 0; i < 20000 && grrl_agent_end(&scene.agent()) == GRRL_AGENT_GOES_ON; i++) {
+        int perceived = scene.seen.perceived;
+        scene.frame();
+        if (scene.seen.perceived == perceived || scene.seen.model.n_bodies < 2)
+            continue;
+        assert_true(scene.seen.pair[0] < scene.seen.pair[1]);
+        assert_true(scene.seen.pair[1] < scene.seen.model.n_bodies);
+        assert_true(scene.seen.sure >= 0.0f && scene.seen.sure <= 1.0f);
+    }
+    assert_true(scene.seen.model.n_bodies >= 2);
 }
 
 void keeps_the_limits_of_the_robot(void **)
@@ -478,6 +502,7 @@ int main()
         cmocka_unit_test(ends_after_the_pushes_that_were_wanted),
         cmocka_unit_test(ends_when_it_is_sure),
         cmocka_unit_test(is_never_sure_of_one_link),
+        cmocka_unit_test(names_the_pair_it_is_least_sure_of),
         cmocka_unit_test(keeps_the_limits_of_the_robot),
         cmocka_unit_test(no_push_leaves_the_table),
         cmocka_unit_test(a_table_without_room_gets_no_push),
