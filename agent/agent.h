@@ -50,6 +50,7 @@ enum grrl_agent_mistake {
     GRRL_MISTAKE_PUSH_OFF_TABLE, /* pushes chosen and not sent: they would leave the table */
     GRRL_MISTAKE_SLOW,           /* times of 2 s with fewer than 20 frames */
     GRRL_MISTAKE_REST,           /* frames at REST after 2 s of REST */
+    GRRL_MISTAKE_MOVING,         /* frames of a push 5 s and more after its timeout */
     GRRL_AGENT_MISTAKES
 };
 

@@ -14,7 +14,14 @@
 
 /* PATIENCE_US: how long something may look wrong. A frame is STRANGE if fewer than a quarter of its
  * points are where the frame before had a point of this id; so many in a row are no accident. */
-enum { PATIENCE_US = 2000000, LEAST_HZ = 10, MOST_STRANGE = 10, STRANGE_SAMPLE = 64, FEW = 4 };
+enum {
+    PATIENCE_US = 2000000,
+    OVERTIME_US = 5000000,
+    LEAST_HZ = 10,
+    MOST_STRANGE = 10,
+    STRANGE_SAMPLE = 64,
+    FEW = 4
+};
 #define NEAR_M 0.05f
 
 /* Above this extent points may be millimetres; a sixteenth of them at each end may be outliers. */
@@ -29,6 +36,7 @@ static const char *const texts[GRRL_AGENT_MISTAKES] = {
     "pushes not sent because they would leave the table",
     "times of 2 s with fewer than 20 frames",
     "frames at REST after 2 s of REST",
+    "frames of a push 5 s and more after its timeout",
 };
 
 const char *grrl_agent_mistake_text(enum grrl_agent_mistake mistake)
@@ -170,6 +178,26 @@ static void watch_rest(struct grrl_agent *agent, const grrl_points_t *points, in
     }
 }
 
+/* A push that does not end. The time is the robot's to keep, and then the object may slide. */
+static void watch_moving(struct grrl_agent *agent, const grrl_points_t *points, int64_t now)
+{
+    bool by_status =
+        points->phase == GRRL_POINTS_T_UNKNOWN && agent->status.state == GRRL_PUSH_STATUS_T_MOVING;
+    bool moving = points->phase == GRRL_POINTS_T_PUSHING || by_status;
+    int64_t allowed_us = (int64_t)((double)agent->command.timeout * 1e6) + OVERTIME_US;
+    if (moving && agent->stage == STAGE_WATCHING && agent->cmd_seq > 0 &&
+        now - agent->plant.commanded_us >= allowed_us &&
+        agent_mistake(agent, GRRL_MISTAKE_MOVING, 1)) {
+        (void)snprintf(
+            agent->note, sizeof agent->note,
+            "push %" PRId32 " goes on 5 s after its timeout of %.1f s: %s once the tool is "
+            "lifted and the object lies still",
+            agent->cmd_seq, (double)agent->command.timeout,
+            by_status ? "the robot must report DONE" : "the phase must become REST, then SETTLED,");
+        agent_note(agent, agent->note);
+    }
+}
+
 void agent_watch_frame(struct grrl_agent *agent, const grrl_points_t *points, bool taken)
 {
     if (agent->config.observe)
@@ -181,6 +209,7 @@ void agent_watch_frame(struct grrl_agent *agent, const grrl_points_t *points, bo
     agent->plant.seq = points->seq;
     watch_rate(agent, points, now);
     watch_rest(agent, points, now);
+    watch_moving(agent, points, now);
     watch_ids(agent, points);
 }
 

@@ -20,11 +20,11 @@ struct Mistake {
 
 const Mistake mistakes[] = {
     {"none", {}, 10, 0.0},
-    {"no_status", {true, 0, 0, GRRL_POINTS_T_UNKNOWN, 1.0, false, false}, 10, 0.0},
-    {"trial", {false, 0, 1, GRRL_POINTS_T_UNKNOWN, 1.0, false, false}, 10, 0.0},
-    {"rest", {false, 0, 0, GRRL_POINTS_T_REST, 1.0, false, false}, 10, 0.0},
-    {"millimetres", {false, 0, 0, GRRL_POINTS_T_UNKNOWN, 1000.0, false, false}, 10, 0.0},
-    {"ids", {false, 0, 0, GRRL_POINTS_T_UNKNOWN, 1.0, true, false}, 10, 0.0},
+    {"no_status", {true, false, 0, 0, GRRL_POINTS_T_UNKNOWN, 1.0, false, false}, 10, 0.0},
+    {"trial", {false, false, 0, 1, GRRL_POINTS_T_UNKNOWN, 1.0, false, false}, 10, 0.0},
+    {"rest", {false, false, 0, 0, GRRL_POINTS_T_REST, 1.0, false, false}, 10, 0.0},
+    {"millimetres", {false, false, 0, 0, GRRL_POINTS_T_UNKNOWN, 1000.0, false, false}, 10, 0.0},
+    {"ids", {false, false, 0, 0, GRRL_POINTS_T_UNKNOWN, 1.0, true, false}, 10, 0.0},
     {"slow", {}, 125, 0.0},
     {"stop", {}, 10, 1.0},
 };

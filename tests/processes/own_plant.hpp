@@ -14,6 +14,7 @@
 /* What it does wrong; the defaults are right. */
 struct PlantMistakes {
     bool no_status = false;   /* the robot never answers */
+    bool never_done = false;  /* it answers MOVING and no more */
     int32_t status_trial = 0; /* what it says the trial is */
     int32_t trial_id = 0;     /* of the frames */
     int8_t phase = GRRL_POINTS_T_UNKNOWN;
@@ -139,7 +140,7 @@ private:
 
     void report(int8_t state, int8_t reason)
     {
-        if (mistakes_.no_status)
+        if (mistakes_.no_status || (mistakes_.never_done && state == GRRL_PUSH_STATUS_T_DONE))
             return;
         grrl_push_status_t status{};
         status.utime = utime_;

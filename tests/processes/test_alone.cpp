@@ -473,6 +473,20 @@ void tells_of_a_phase_that_stays_at_rest(void **)
     told_once(mistakes, GRRL_MISTAKE_REST, "send SETTLED");
 }
 
+void tells_of_a_push_that_does_not_end(void **)
+{
+    PlantMistakes mistakes;
+    mistakes.never_done = true;
+    Scene scene(defaults(), "RPR", mistakes);
+    scene.seconds(7.0);
+    assert_int_equal(scene.told("the robot must report DONE"), 0);
+    scene.seconds(2.0);
+    assert_int_equal(scene.told("the robot must report DONE"), 1);
+    scene.seconds(5.0);
+    assert_int_equal(scene.told("the robot must report DONE"), 1);
+    assert_true(grrl_agent_mistakes(&scene.agent(), GRRL_MISTAKE_MOVING) > 100);
+}
+
 /* A robot that leaves out whose command it obeys is no other agent's. */
 void an_answer_without_an_agent_is_no_rival(void **)
 {
@@ -518,6 +532,7 @@ int main()
         cmocka_unit_test(a_large_table_must_be_named),
         cmocka_unit_test(tells_of_a_slow_tracker),
         cmocka_unit_test(tells_of_a_phase_that_stays_at_rest),
+        cmocka_unit_test(tells_of_a_push_that_does_not_end),
         cmocka_unit_test(an_answer_without_an_agent_is_no_rival),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
