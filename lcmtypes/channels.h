@@ -10,5 +10,6 @@
 #define GRRL_CHANNEL_MODEL "GRRL_MODEL"               /* model_t */
 #define GRRL_CHANNEL_DECISION "GRRL_DECISION"         /* decision_t */
 #define GRRL_CHANNEL_AGENT_STATUS "GRRL_AGENT_STATUS" /* agent_status_t */
+#define GRRL_CHANNEL_STOP "GRRL_STOP"                 /* stop_t */
 
 #endif

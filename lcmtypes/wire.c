@@ -210,6 +210,15 @@ static const struct field image_fields[] = {
 };
 #undef I
 
+#define S grrl_stop_t
+static const struct field stop_fields[] = {
+    ONE(S, I64, utime, ANY64),
+    ONE(S, I64, session_id, POSITIVE64),
+    ONE(S, I64, agent_session_id, COUNT64),
+    ONE(S, I8, reason, GRRL_STOP_T_OPERATOR, GRRL_STOP_T_FAULT),
+};
+#undef S
+
 /* The address of value i of a field. A variable array is a pointer in the struct; memcpy reads it
  * regardless of the pointer's type. */
 static unsigned char *place(const struct field *field, void *message, uint32_t i)
@@ -417,6 +426,7 @@ TYPE(trial)
 TYPE(decision)
 TYPE(agent_status)
 TYPE(image)
+TYPE(stop)
 
 ENCODE(points)
 ENCODE(push_command)
@@ -424,12 +434,14 @@ ENCODE(push_status)
 ENCODE(trial)
 ENCODE(decision)
 ENCODE(agent_status)
+ENCODE(stop)
 
 DECODE(push_command)
 DECODE(push_status)
 DECODE(trial)
 DECODE(decision)
 DECODE(agent_status)
+DECODE(stop)
 
 bool grrl_wire_decode_points(const void *data, uint32_t size, struct grrl_wire_points *out,
                              struct grrl_wire_why *why)

@@ -26,6 +26,7 @@
 #include "grrl_points_t.h"
 #include "grrl_push_command_t.h"
 #include "grrl_push_status_t.h"
+#include "grrl_stop_t.h"
 #include "grrl_trial_t.h"
 
 #include "grrl/base/api.h"
@@ -103,6 +104,8 @@ bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t 
                                struct grrl_wire_why *why);
 bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
                                    struct grrl_wire_why *why);
+bool grrl_wire_decode_stop(const void *data, uint32_t size, grrl_stop_t *out,
+                           struct grrl_wire_why *why);
 
 bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_image *out,
                             struct grrl_wire_why *why);
@@ -125,6 +128,8 @@ int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capaci
                                   struct grrl_wire_why *why);
 int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
                            struct grrl_wire_why *why);
+int grrl_wire_encode_stop(const grrl_stop_t *message, int capacity, uint8_t *data,
+                          struct grrl_wire_why *why);
 
 GRRL_API_END
 

@@ -36,8 +36,10 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
         nullptr,
     };
     const grrl_option rows[] = {
-        grrl_option_text("object", "OBJECT",
-                         "chain (RPR), term (D(lb, R(l1, l2))) or file; required", &o.object),
+        grrl_option_text(
+            "object", "OBJECT",
+            "chain (RPR), term (D(lb, R(l1, l2))), file, or name (wooden-toy);\nrequired",
+            &o.object),
         grrl_option_int("trials", "N", "number of trials (1)", 1, 1000000, &o.trials),
         grrl_option_int("cap", "N", "pushes after which a trial ends unsolved (100)", 1, 1000000,
                         &o.cap),

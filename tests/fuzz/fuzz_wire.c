@@ -36,6 +36,7 @@ static grrl_trial_t trial;
 static grrl_decision_t decision;
 static grrl_agent_status_t agent_status;
 static struct grrl_wire_image image;
+static grrl_stop_t stop;
 
 CHECK(points, points, points.message)
 CHECK(model, model, model.message)
@@ -45,6 +46,7 @@ CHECK(trial, trial, trial)
 CHECK(decision, decision, decision)
 CHECK(agent_status, agent_status, agent_status)
 CHECK(image, image, image.message)
+CHECK(stop, stop, stop)
 
 static const struct {
     void (*check)(const uint8_t *data, uint32_t size);
@@ -58,6 +60,7 @@ static const struct {
     {check_decision, __grrl_decision_t_get_hash},
     {check_agent_status, __grrl_agent_status_t_get_hash},
     {check_image, __grrl_image_t_get_hash},
+    {check_stop, __grrl_stop_t_get_hash},
 };
 
 enum { N_TYPES = sizeof types / sizeof types[0] };

@@ -114,6 +114,7 @@ static void write_messages(void)
     const grrl_decision_t decision = {
         .session_id = 1, .trial_id = 1, .cmd_seq = 1, .source_index = -1, .phi = 0.5f};
     const grrl_agent_status_t agent_status = {.session_id = 1, .received = 5};
+    const grrl_stop_t stop = {.session_id = 2, .reason = GRRL_STOP_T_FAULT};
     enum { ALL = GRRL_WIRE_MAX_BYTES };
     fill_model();
     place(0.3f);
@@ -133,6 +134,7 @@ static void write_messages(void)
                                 .n_bytes = sizeof pixels,
                                 .data = pixels};
     write_message(7, "image", grrl_wire_encode_image(&image, ALL, bytes, &why));
+    write_message(8, "stop", grrl_wire_encode_stop(&stop, ALL, bytes, &why));
 }
 
 /* --- logs ------------------------------------------------------------------------------------- */

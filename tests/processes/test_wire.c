@@ -31,6 +31,7 @@ static grrl_trial_t trial;
 static grrl_decision_t decision;
 static grrl_agent_status_t agent_status;
 static struct grrl_wire_image image;
+static grrl_stop_t stop;
 
 #define FACE(type, variable, message)                                                              \
     static bool decode_##type(const void *data, uint32_t size)                                     \
@@ -50,8 +51,9 @@ FACE(trial, trial, trial)
 FACE(decision, decision, decision)
 FACE(agent_status, agent_status, agent_status)
 FACE(image, image, image.message)
+FACE(stop, stop, stop)
 
-#define N_TYPES 8
+#define N_TYPES 9
 static struct subject subjects[N_TYPES] = {
     {"points", 0, {0}, decode_points, encode_points},
     {"model", 0, {0}, decode_model, encode_model},
@@ -61,6 +63,7 @@ static struct subject subjects[N_TYPES] = {
     {"decision", 0, {0}, decode_decision, encode_decision},
     {"agent_status", 0, {0}, decode_agent_status, encode_agent_status},
     {"image", 0, {0}, decode_image, encode_image},
+    {"stop", 0, {0}, decode_stop, encode_stop},
 };
 
 static void fill_points(int n)
@@ -128,6 +131,7 @@ static void fill_small(void)
     decision = (grrl_decision_t){.session_id = 43, .trial_id = 1, .cmd_seq = 1, .source_index = -1};
     decision.phi = 0.5f;
     agent_status = (grrl_agent_status_t){.session_id = 43, .received = INT64_MAX};
+    stop = (grrl_stop_t){.session_id = 42, .reason = GRRL_STOP_T_LIMIT};
 }
 
 static void fill_image(int32_t width, int32_t height, int8_t encoding, int32_t n_bytes)
