@@ -17,6 +17,8 @@ namespace
 
 enum { GROUP = 3, ROUNDS = 3, LEAST_BODY = 4, POSE_NUMBERS = 3 };
 
+constexpr double most_sigmas = 3.0; /* of a distance that does not change */
+
 using Rows = std::vector<size_t>;
 
 /* A body's pose in a picture, if two of its points and more are seen. */
@@ -62,7 +64,7 @@ private:
 };
 
 /* How much the distance of two tracks varies, in sigmas, and a little of how far they are; infinite
- * where they are hardly seen together. */
+ * where it varies more than noise does, or they are hardly seen together. */
 double Merging::variation(size_t a, size_t b) const
 {
     double n = 0.0, sum = 0.0, squares = 0.0;
@@ -76,8 +78,8 @@ double Merging::variation(size_t a, size_t b) const
     }
     if (n < 2.0)
         return HUGE_VAL;
-    double variance = std::max(squares / n - sum / n * sum / n, 0.0);
-    return std::sqrt(variance) / sigma_m_ + 0.02 * sum / n / sigma_m_;
+    double sd = std::sqrt(std::max(squares / n - sum / n * sum / n, 0.0)) / sigma_m_;
+    return sd > most_sigmas ? HUGE_VAL : sd + 0.02 * sum / n / sigma_m_;
 }
 
 /* Each track with the two that vary least to it, as long as there are free ones. */

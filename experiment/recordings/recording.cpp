@@ -26,6 +26,7 @@ constexpr double frozen_share = 0.15;  /* of all points */
 /* A feature of a body and the track that has it now. */
 struct Feature {
     size_t body = 0;
+    bool below = false;   /* on the ground: bodies hide it */
     Vec2 place_m;         /* in the body */
     double slide_m = 0.0; /* along the body's x axis in the whole time */
     double begin = 0.0;   /* of its track: times from 0 to 1 */
@@ -36,31 +37,51 @@ struct Feature {
     Seen last{-1, 0.0, 0.0};
 };
 
-Vec2 draw_in(Random &random, double half_length, double half_width)
+/*
+ * Points in a rectangle, none too near another: corner detectors keep a distance. Of several
+ * candidates the one farthest from all so far is taken (Mitchell, 1991).
+ */
+std::vector<Vec2> spread_points(Random &random, int count, double half_length, double half_width)
 {
-    return {random.uniform(-half_length, half_length), random.uniform(-half_width, half_width)};
+    std::vector<Vec2> points;
+    for (int i = 0; i < count; i++) {
+        Vec2 best;
+        double farthest = -1.0;
+        for (int candidate = 0; candidate < 12; candidate++) {
+            Vec2 at{random.uniform(-half_length, half_length),
+                    random.uniform(-half_width, half_width)};
+            double nearest = HUGE_VAL;
+            for (Vec2 other : points)
+                nearest = std::min(nearest, length(at - other));
+            if (nearest > farthest) {
+                farthest = nearest;
+                best = at;
+            }
+        }
+        points.push_back(best);
+    }
+    return points;
 }
 
 std::vector<Feature> place_features(const Scene &scene, int points, Random &random)
 {
     std::vector<Feature> features;
+    auto add = [&](size_t body, Vec2 place) {
+        Feature feature;
+        feature.body = body;
+        feature.place_m = place;
+        features.push_back(feature);
+    };
     for (size_t b = 0; b < scene.bodies.size(); b++) {
         const Body &body = scene.bodies[b];
-        for (int i = 0; i < points && body.half_length_m > 0.0; i++) {
-            Feature feature;
-            feature.body = b;
-            feature.place_m = draw_in(random, body.half_length_m, body.half_width_m);
-            if (i < 2) /* however few, they show a rotation */
-                feature.place_m.x = (i == 0 ? -0.8 : 0.8) * body.half_length_m;
-            features.push_back(feature);
-        }
+        if (body.half_length_m > 0.0)
+            for (Vec2 at : spread_points(random, points, body.half_length_m, body.half_width_m))
+                add(b, at);
     }
-    for (int i = 0; i < std::max(2 * points, 10); i++) {
-        Feature feature;
-        Vec2 place = draw_in(random, 0.5 * table_links[0] * scene.link_m,
-                             0.5 * table_links[1] * scene.link_m);
-        feature.place_m = transform(inverse(scene.bodies[0].start), place);
-        features.push_back(feature);
+    Vec2 half{0.5 * table_links[0] * scene.link_m, 0.5 * table_links[1] * scene.link_m};
+    for (Vec2 at : spread_points(random, std::max(2 * points, 10), half.x, half.y)) {
+        add(0, transform(inverse(scene.bodies[0].start), at));
+        features.back().below = true;
     }
     return features;
 }
@@ -126,13 +147,13 @@ public:
         std::vector<Placed> placed = scene_.at(t);
         recording_.frames.emplace_back();
         for (Feature &feature : features_)
-            look_at(feature, placed[feature.body], t);
+            look_at(feature, placed, t);
     }
 
     Recording result() { return std::move(recording_); }
 
 private:
-    void look_at(Feature &feature, const Placed &placed, double t)
+    void look_at(Feature &feature, const std::vector<Placed> &placed, double t)
     {
         Vec2 noise{random_.normal(), random_.normal()};
         bool missed = random_.uniform() < missing;
@@ -142,10 +163,12 @@ private:
             recording_.frames.back().push_back(feature.last);
             return;
         }
-        Vec2 at = position(feature, placed, t) + recording_.noise * noise;
-        bool seen = recording_.unit != Unit::PX || view_.in_picture(at);
+        Vec2 table_m = on_table(feature, placed[feature.body], t);
+        Vec2 at = picture_of(table_m, t) + recording_.noise * noise;
+        bool seen = (recording_.unit != Unit::PX || view_.in_picture(at)) &&
+                    !(feature.below && is_covered(placed, table_m));
         if (!seen)
-            feature.id = -1; /* out of the picture: the tracker has lost it */
+            feature.id = -1; /* the tracker has lost it */
         if (!seen || missed)
             return;
         if (feature.id < 0 || t > feature.renewed)
@@ -154,14 +177,32 @@ private:
         recording_.frames.back().push_back(feature.last);
     }
 
-    Vec2 position(const Feature &feature, const Placed &placed, double t) const
+    static Vec2 on_table(const Feature &feature, const Placed &placed, double t)
     {
         Vec2 place = feature.place_m;
         place.x += feature.slide_m * (t - 0.5);
-        Vec2 table_m = transform(placed.pose, placed.scale * place);
+        return transform(placed.pose, placed.scale * place);
+    }
+
+    Vec2 picture_of(Vec2 table_m, double t) const
+    {
         if (recording_.unit == Unit::PX)
             return view_.project(table_m, t);
         return (recording_.unit == Unit::MM ? 1000.0 : 1.0) * table_m;
+    }
+
+    /* By a body, or by the frame of a door on the ground. */
+    bool is_covered(const std::vector<Placed> &placed, Vec2 table_m) const
+    {
+        for (size_t b = 0; b < placed.size(); b++) {
+            const Body &body = scene_.bodies[b];
+            Vec2 at = transform(inverse(placed[b].pose), table_m);
+            if (body.half_length_m > 0.0 &&
+                std::abs(at.x) <= placed[b].scale * body.half_length_m &&
+                std::abs(at.y) <= placed[b].scale * body.half_width_m)
+                return true;
+        }
+        return false;
     }
 
     /* Ids of a tracker that renews them live for 8 to 60 frames at 30 Hz. */

@@ -67,8 +67,9 @@ public:
         return in_body > 0 ? static_cast<double>(wrong) / in_body : 0.0;
     }
 
-    /* One body of the answer for each that moves, at most one for the ground, and most assigned. */
-    bool right() const
+    /* One body of the answer for each that moves, and most of it assigned. The ground may be one
+     * body; in metres several: anything on a table may be an object. */
+    bool right(bool in_metres) const
     {
         std::vector<int> times(bodies_, 0);
         for (size_t link = 0; link < links_; link++) {
@@ -81,7 +82,7 @@ public:
             for (size_t link = 0; link < links_; link++)
                 assigned += count_[b][link];
             bool most = assigned >= least_assigned * (assigned + count_[b][links_]);
-            if (times[b] > 1 || (b > 0 && (times[b] == 0 || !most)))
+            if ((times[b] > 1 && !(b == 0 && in_metres)) || (b > 0 && (times[b] == 0 || !most)))
                 return false;
         }
         return error() <= most_error;
@@ -100,7 +101,7 @@ Score score(const Recording &recording, const Estimate &estimate)
     Table table(recording, estimate);
     Score score;
     score.bodies = estimate.links;
-    score.bodies_right = table.right();
+    score.bodies_right = table.right(recording.unit != Unit::PX);
     score.error = table.error();
     score.joints = static_cast<int>(recording.joints.size());
     std::vector<EstimatedJoint> joints = estimate.joints;

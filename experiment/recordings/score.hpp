@@ -2,7 +2,8 @@
  * score.hpp: how right an answer about a recording is.
  *
  * A body of the answer stands for the true one that most of its tracks are of. What rests is one
- * body with the ground: its tracks may be background, of no body, or of one body. Tracks of which
+ * body with the ground: its tracks may be background, of no body, or of one body (in metres, of
+ * several: anything on a table may be an object). Tracks of which
  * nobody can say where they belong do not count.
  */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_SCORE_HPP
