@@ -18,7 +18,7 @@ void add(const Outcome &outcome, Kind kind, Figures &f)
     bool false_called = score.false_called > 0;
     bool false_sure = score.false_sure > 0;
     f.recordings++;
-    f.failed += outcome.failed;
+    f.failed += {outcome.failed, 1};
     f.bodies += {score.bodies_right, 1};
     f.error += score.error;
     f.ms += outcome.ms;
@@ -82,6 +82,7 @@ void print_summary(std::FILE *file, const Figures *f)
         {"a hand that lets go: right structure", &Figures::hand},
         {"bodies right", &Figures::bodies},
         {"true joints missed", &Figures::missed},
+        {"no answer", &Figures::failed},
     };
     (void)std::fprintf(file, "\n%-38s", "with 95% intervals (Wilson)");
     for (const char *name : method_names)

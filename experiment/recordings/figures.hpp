@@ -34,8 +34,8 @@ struct Share {
 
 struct Figures {
     int recordings = 0;
-    int failed = 0;
-    Share right; /* mechanisms with the right structure */
+    Share failed; /* no answer */
+    Share right;  /* mechanisms with the right structure */
     Share mechanism_false;
     Share missed;             /* of all true joints */
     Share independent_right;  /* bodies right and no joint */

@@ -90,7 +90,7 @@ std::vector<Feature> place_features(const Scene &scene, int points, Random &rand
 void spoil(Tracks tracks, const Scene &scene, std::vector<Feature> &features, Random &random)
 {
     size_t one = 1 + static_cast<size_t>(random.below(static_cast<int>(scene.bodies.size()) - 1));
-    double all_at = random.uniform(0.2, 0.4);
+    double all_at = random.uniform(0.15, 0.33);
     for (Feature &feature : features) {
         bool some = random.uniform() < 0.3;
         double when = random.uniform(0.15, 0.6);

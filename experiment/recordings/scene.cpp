@@ -73,7 +73,8 @@ std::vector<Ramp> draw_ramps(Random &random, double begin, double end, double ra
     return {{begin, middle, size}, {middle, end, -size * random.uniform(0.6, 1.0)}};
 }
 
-/* A joint between the last two bodies; each moves by 20 degrees or 10% of a link at least. */
+/* A joint between the last two bodies. It moves by 20 degrees or 10% of a link at least, also while
+ * a link is seen late or early. */
 void join(Random &random, Scene &scene, int a, grrl_joint_type type)
 {
     Joint joint;
@@ -86,9 +87,9 @@ void join(Random &random, Scene &scene, int a, grrl_joint_type type)
         joint.at_a_m = {first.half_length_m - 0.5 * first.half_width_m, 0.0};
         joint.at_b_m = {-second.half_length_m + 0.5 * second.half_width_m, 0.0};
         joint.angle_rad = random.uniform(-0.8, 0.8);
-        joint.ramps = draw_ramps(random, 0.08, 0.92, radians(random.uniform(25.0, 90.0)));
+        joint.ramps = draw_ramps(random, 0.08, 0.92, radians(random.uniform(32.0, 90.0)));
     } else {
-        double reach = random.uniform(0.15, 0.4) * scene.link_m;
+        double reach = random.uniform(0.18, 0.4) * scene.link_m;
         joint.at_a_m = {first.half_length_m + 0.6 * second.half_length_m, 0.0};
         joint.ramps = draw_ramps(random, 0.08, 0.92, reach);
     }

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "grrl/base/geometry.h"
-#include "trajectory_evidence.h"
+#include "perception/trajectory_evidence.h"
 
 /* Coordinates beyond this are refused, and no radius is said to be larger: squares of both stay far
  * from the limits of a float. */

@@ -8,7 +8,7 @@
  * all is one over the number of independent samples. What the slowest waves have beyond it are
  * errors of hand and mechanism, which no number of samples averages out, or a wrong model.
  */
-#include "trajectory_evidence.h"
+#include "perception/trajectory_evidence.h"
 
 #include <string.h>
 
