@@ -15,7 +15,9 @@ using grrl_sim::Vec2;
 namespace
 {
 
-enum { GROUP = 3, ROUNDS = 3, LEAST_BODY = 4, POSE_NUMBERS = 3 };
+enum { GROUP = 3, ROUNDS = 3, LEAST_BODY = 4 };
+
+constexpr double pose_numbers = 3.0; /* of a pose in the plane */
 
 constexpr double most_sigmas = 3.0; /* of a distance that does not change */
 
@@ -203,7 +205,7 @@ Fit Merging::fit(const Rows &rows) const
                 fit.cost += dot(off, off) / (sigma_m_ * sigma_m_);
             }
         }
-        fit.cost += std::min<double>(free, POSE_NUMBERS) * log_n_;
+        fit.cost += std::min(free, pose_numbers) * log_n_;
     }
     return fit;
 }
@@ -276,7 +278,7 @@ bool Merging::relate(const Fit &a, const Fit &b, EstimatedJoint &joint) const
     double reach2 = errors.reach_m * errors.reach_m;
     double place_m2 = sigma_m_ * sigma_m_ * (arm_n / n + reach2 * angle_n / n);
     double angle_rad2 = sigma_m_ * sigma_m_ * angle_n / n;
-    double free = POSE_NUMBERS * (n - 1.0) * log_n_;
+    double free = pose_numbers * (n - 1.0) * log_n_;
     double pivot = n * errors.pivot_m * errors.pivot_m / place_m2 + (n - 1.0 + 4.0) * log_n_;
     double axis = n * errors.line_m * errors.line_m / place_m2 +
                   n * errors.turn_rad * errors.turn_rad / angle_rad2 + (n - 1.0 + 3.0) * log_n_;
