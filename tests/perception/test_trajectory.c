@@ -230,6 +230,11 @@ static void test_what_is_refused(void **state)
         rows[7] = i == 0 ? NAN : i == 1 ? INFINITY : -1001.0f;
         assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NUMBER);
     }
+    for (int i = 0; i < 4; i++) { /* a kilometre, and more */
+        rows[7] = (i % 2 == 0 ? 1000.0f : 1000.1f) * (i < 2 ? 1.0f : -1.0f);
+        enum grrl_status status = grrl_trajectory_fit_of(&trajectory, &config, &result);
+        assert_int_equal(status == GRRL_ERR_NUMBER, i % 2 == 1);
+    }
     for (uint32_t i = 0; i < 15; i++)
         rows[i] = (float)(i / 3) * 10.0f; /* all but the ends are in line */
     rows[7] = 500.0f;
@@ -261,7 +266,8 @@ static void test_any_size(void **state)
     struct grrl_random random = support_random("any_size");
     for (int run = 0; run < 60; run++) {
         double size = pow(10.0, -10.0 + 0.2 * run);
-        struct grrl_trajectory_fit result = fit(arc(&random, 60, size, 1.0, fmin(0.02 * size, 0.005)));
+        struct grrl_trajectory_fit result =
+            fit(arc(&random, 60, size, 1.0, fmin(0.02 * size, 0.005)));
         assert_true(fabsf(sum_of(&result) - 1.0f) < 1e-5f);
         assert_true(result.p_rigid >= 0.0f && result.p_neither >= 0.0f);
         assert_true(result.revolute.probability >= 0.0f && result.prismatic.probability >= 0.0f);
