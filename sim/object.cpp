@@ -39,12 +39,13 @@ Result<ObjectSpec> object_from_word(const std::string &text)
     Result<ObjectSpec> object = object_from_term(text);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
         object = Result<ObjectSpec>::bad("a single link of this name is written L(" + text + ")");
-    if (!object) {
-        std::string names = object_names();
-        object.error = "'" + text + "' is no chain such as RPR, no file such as scissors.grrl, " +
-                       (names.empty() ? "" : "none of the objects " + names + ", ") +
-                       "and as a term: " + object.error;
-    }
+    if (!object)
+        object.error = "'" + text +
+                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
+                       object.error;
+    std::string names = object_names();
+    if (!object && !names.empty())
+        object.error += "; by name there are " + names;
     return object;
 }
 
