@@ -14,6 +14,13 @@ from .policy import Outcome, Policy, View
 from .tracks import Tracks
 from .world import (PushResult, Supervisor, TrialResult, Verdict, World, run_trial, trial_seed)
 
+try:  # where Gymnasium is: gymnasium.make("grrl/Discover-v0")
+    from . import envs
+except ImportError:
+    pass
+else:
+    envs.register()
+
 __version__ = "0.1.0"
 
 __all__ = [

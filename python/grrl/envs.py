@@ -170,5 +170,5 @@ class DiscoverEnv(gymnasium.Env):
 
 
 def register() -> None:
-    """Makes "grrl/Discover-v0" known; gymnasium calls it when grrl is installed."""
+    """Makes "grrl/Discover-v0" known; `import grrl` does it."""
     gymnasium.register("grrl/Discover-v0", entry_point="grrl.envs:DiscoverEnv")
