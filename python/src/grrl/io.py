@@ -84,16 +84,18 @@ def from_deeplabcut(table: pandas.DataFrame | str | os.PathLike[str], likelihood
     if getattr(table.columns, "nlevels", 1) < 2:
         raise ValueError("a table of DeepLabCut has several header rows (scorer, bodyparts, coords); this "
                          "one has a single one: see grrl.io.from_csv")
-    parts = list(dict.fromkeys(name[:-1] for name in table.columns))
+    parts: dict[Any, dict[str, int]] = {}
+    for place, name in enumerate(table.columns):
+        parts.setdefault(name[:-1], {})[name[-1]] = place
     arrays = []
-    for part in parts:
-        group = table[part]
-        if not {"x", "y"} <= set(group.columns):
+    for part, places in parts.items():
+        if not {"x", "y"} <= set(places):
             raise ValueError(f"the body part {part[-1]} needs the columns x and y; it has "
-                             f"{', '.join(map(str, group.columns))}")
-        xy = group[["x", "y"]].to_numpy(np.float64, copy=True)
-        if "likelihood" in group.columns:
-            xy[~(group["likelihood"].to_numpy(np.float64) >= likelihood)] = np.nan
+                             f"{', '.join(map(str, places))}")
+        xy = table.iloc[:, [places["x"], places["y"]]].to_numpy(np.float64, copy=True)
+        if "likelihood" in places:
+            sure = table.iloc[:, places["likelihood"]].to_numpy(np.float64)
+            xy[~(sure >= likelihood)] = np.nan
         xy[np.isnan(xy).any(axis=1)] = np.nan
         arrays.append(xy)
     return Tracks.from_array(np.stack(arrays, axis=1) if arrays else np.empty((0, 0, 2)), "px")
