@@ -217,8 +217,9 @@ def _curves(options: argparse.Namespace) -> list[Curve]:
         Supervisor(options.pretrain[0])
     curves = []
     for name in options.policy.split(","):
+        learns = Learner(load_policy(name)).learns  # raises ValueError, too
         curves.append(Curve(options.object, name))
-        if options.pretrain and Learner(load_policy(name)).learns:
+        if options.pretrain and learns:
             curves.append(Curve(options.object, name, *options.pretrain))
     return curves
 
