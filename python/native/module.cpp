@@ -1,6 +1,8 @@
 /* module.cpp: the extension module grrl._native, and the capacities it was built with. */
 #include "native.hpp"
 
+#include <cstdlib>
+
 #include "grrl/policies.h"
 
 namespace grrl_python
@@ -37,6 +39,8 @@ void bind_constants(nb::module_ &m)
 NB_MODULE(_native, m)
 {
     using namespace grrl_python;
+    /* At exit a traceback or a cycle often keeps objects alive, which is no leak of ours. */
+    nanobind::set_leak_warnings(std::getenv("GRRL_LEAK_WARNINGS") != nullptr);
     m.doc() = "The C library grrl and the simulated world; grrl's Python modules wrap it.";
     bind_constants(m);
     bind_model(m);

@@ -125,6 +125,8 @@ private:
     float measure_noise() const;
     grrl_status observe();
     void begin(const grrl_perception_config &config);
+
+    unsigned n_tracks_ = 0; /* ids in the input; counting takes a sort */
 };
 
 float Run::measure_noise() const
@@ -184,8 +186,7 @@ grrl_report Run::report() const
     report.per_metre = 1.0 / static_cast<double>(unit.metres);
     report.noise = static_cast<double>(perception->config.noise_m) * report.per_metre;
     report.frames = static_cast<unsigned>(tracks.all.n_frames);
-    report.tracks =
-        static_cast<unsigned>(grrl_tracks_count_ids(&tracks.all) + tracks.all.left_out.n);
+    report.tracks = n_tracks_;
     report.keyframes = perception->counts.keyframes_high;
     report.y_down = std::strcmp(unit.name, "px") == 0;
     return report;
@@ -219,6 +220,7 @@ void Run::run(bool drop_lost)
         throw std::invalid_argument("no point is visible in any frame");
     if (status != GRRL_OK)
         throw std::runtime_error(grrl_status_text(status));
+    n_tracks_ = static_cast<unsigned>(grrl_tracks_count_ids(&all) + all.left_out.n);
     term = term_of(*grrl_perception_model(perception.get()), large_m);
     grrl_report with_doubts = report();
     grrl_doubt_input(&all, &warnings);
@@ -250,6 +252,28 @@ struct MemoryFile {
     }
 };
 
+struct MotionRow {
+    long long frame;
+    unsigned a;
+    unsigned b;
+    double value; /* radians or units */
+};
+
+/* frame,fA,fB,type,value,unit. Not by sscanf, which measures all the text behind for each row. */
+MotionRow row_of(const char *text)
+{
+    MotionRow row{};
+    char *at = nullptr;
+    row.frame = std::strtoll(text, &at, 10);
+    row.a = static_cast<unsigned>(std::strtoul(at + 2, &at, 10)); /* behind ",f" */
+    row.b = static_cast<unsigned>(std::strtoul(at + 2, &at, 10));
+    bool slides = at[1] == 'p';
+    row.value = std::strtod(std::strchr(at + 1, ',') + 1, nullptr);
+    if (!slides)
+        row.value *= static_cast<double>(GRRL_PI) / 180.0;
+    return row;
+}
+
 /* Of joint j in frame f, at j * frames + f: radians or units, NaN where it is not known. */
 std::vector<double> motion_of(const Run &run)
 {
@@ -269,15 +293,8 @@ std::vector<double> motion_of(const Run &run)
     memory.close();
     const char *line = std::strchr(memory.text, '\n'); /* the header ends */
     while (line != nullptr && line[1] != '\0') {
-        long long frame = 0;
-        unsigned a = 0, b = 0;
-        char type = '\0';
-        double value = 0.0;
-        if (std::sscanf(line + 1, "%lld,f%u,f%u,%c%*[a-z],%lf", &frame, &a, &b, &type, &value) != 5)
-            throw std::runtime_error("the motion of the joints cannot be read");
-        bool slides = type == 'p';
-        motion[joint_of.at({a, b}) * frames + frame_of.at(frame)] =
-            slides ? value : value * static_cast<double>(GRRL_PI) / 180.0;
+        MotionRow row = row_of(line + 1);
+        motion[joint_of.at({row.a, row.b}) * frames + frame_of.at(row.frame)] = row.value;
         line = std::strchr(line + 1, '\n');
     }
     return motion;
@@ -342,8 +359,8 @@ using Lost = std::tuple<size_t, size_t, size_t>;
 
 nb::dict perceive(const Ids &id, const Floats &x, const Floats &y, const Counts &count,
                   const Numbers &number, const Flags &pushing, const Flags &settled,
-                  const std::string &unit, const std::string &profile, double noise, const Lost &lost,
-                  bool drop_lost, bool said, bool with_motion)
+                  const std::string &unit, const std::string &profile, double noise,
+                  const Lost &lost, bool drop_lost, bool said, bool with_motion)
 {
     Run run;
     fill(run.tracks, id, x, y, count, number, pushing, settled);
