@@ -214,7 +214,7 @@ nb::object Learner::choose()
     return decision_dict(decision);
 }
 
-nb::object Learner::adopt(int number, int direction)
+nb::dict Learner::adopt(int number, int direction)
 {
     Use use(*this);
     if (direction < 0 || direction >= GRRL_DIRECTIONS)
@@ -357,7 +357,7 @@ void bind_learner(nb::module_ &m)
         .def("begin_trial", &Learner::begin_trial, nb::arg("trial"))
         .def("observe", &Learner::observe, nb::arg("frame"), nb::arg("pushing"))
         .def("perceive", &Learner::perceive)
-        .def("choose", &Learner::choose)
+        .def("choose", &Learner::choose, nb::sig("def choose(self) -> dict | None"))
         .def("adopt", &Learner::adopt, nb::arg("number"), nb::arg("direction"))
         .def("learn", &Learner::learn, nb::arg("ended"))
         .def("abandon", &Learner::abandon)

@@ -47,11 +47,12 @@ struct Frame {
 Frame frame_from(const Ids &id, const Floats &x_m, const Floats &y_m);
 
 /* A NumPy array that owns a vector's values; their number is the product of the shape. */
-template <typename T> nb::object array_of(std::vector<T> values, std::vector<size_t> shape)
+template <typename T>
+nb::ndarray<nb::numpy, T> array_of(std::vector<T> values, std::vector<size_t> shape)
 {
     auto *owned = new std::vector<T>(std::move(values));
     nb::capsule owner(owned, [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T>(owned->data(), shape.size(), shape.data(), owner));
+    return nb::ndarray<nb::numpy, T>(owned->data(), shape.size(), shape.data(), owner);
 }
 
 /* The term of a model. */
@@ -109,8 +110,9 @@ public:
     void begin_trial(uint32_t trial);
     void observe(const Frame &frame, bool pushing);
     bool perceive();
+    /* None without a link to push */
     nb::object choose();
-    nb::object adopt(int number, int direction);
+    nb::dict adopt(int number, int direction);
     nb::tuple learn(bool ended);
     void abandon();
     nb::dict model();

@@ -173,7 +173,7 @@ private:
     grrl_sim::Supervisor supervisor_;
 };
 
-nb::object true_poses(const PyWorld &self)
+nb::ndarray<nb::numpy, double> true_poses(const PyWorld &self)
 {
     std::vector<double> values;
     std::vector<grrl_sim::Pose> poses = self.world.true_poses();
@@ -182,7 +182,7 @@ nb::object true_poses(const PyWorld &self)
     return array_of(std::move(values), {poses.size(), 3});
 }
 
-nb::object true_joint_values(const PyWorld &self)
+nb::ndarray<nb::numpy, double> true_joint_values(const PyWorld &self)
 {
     std::vector<double> values;
     size_t n = self.world.object().joints.size();
@@ -191,7 +191,7 @@ nb::object true_joint_values(const PyWorld &self)
     return array_of(std::move(values), {n});
 }
 
-nb::object true_link_of_point(const PyWorld &self)
+nb::ndarray<nb::numpy, int32_t> true_link_of_point(const PyWorld &self)
 {
     std::vector<int32_t> links;
     for (int id = 0; id < self.world.tracker().feature_count(); id++)
@@ -200,7 +200,7 @@ nb::object true_link_of_point(const PyWorld &self)
     return array_of(std::move(links), {n});
 }
 
-nb::object true_sizes(const PyWorld &self)
+nb::ndarray<nb::numpy, double> true_sizes(const PyWorld &self)
 {
     std::vector<double> values;
     for (const grrl_sim::LinkSpec &link : self.world.object().links)

@@ -17,7 +17,7 @@ INT32 = (-(2**31), 2**31 - 1)
 def numbers(value: Any, name: str) -> np.ndarray:
     """An array of real numbers; masked values become NaN."""
     if isinstance(value, np.ma.MaskedArray):
-        value = value.astype(np.float64).filled(np.nan)
+        value = np.ma.filled(value.astype(np.float64), np.nan)
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -44,8 +44,7 @@ def positions(value: Any, name: str, shape: str, ndim: int) -> np.ndarray:
     missing = np.isnan(single)
     half = np.argwhere(missing[..., 0] != missing[..., 1])
     if half.size:
-        place = [int(i) for i in half[0]]
-        raise ValueError(f"{name}{place} has only one coordinate; both are NaN for a point that was "
+        raise ValueError(f"{name}{[int(i) for i in half[0]]} has only one coordinate; both are NaN for a point that was "
                          "not seen")
     return single
 

@@ -156,7 +156,7 @@ class DiscoverEnv(gymnasium.Env):
         found = {"links": np.clip(links, -_FAR_M, _FAR_M), "link_mask": mask,
                  "joints": np.clip(joints, 0.0, 1.0), "tried": tried}
         if self._points:
-            points = np.tile(np.float32([0.0, 0.0, -2.0]), (_native.MAX_FEATURES, 1))
+            points = np.tile(np.array([0.0, 0.0, -2.0], np.float32), (_native.MAX_FEATURES, 1))
             points[:model.ids.size, :2] = np.clip(model.positions, -_FAR_M, _FAR_M)
             points[:model.ids.size, 2] = np.maximum(model.body_of, -1)
             found["points"] = points

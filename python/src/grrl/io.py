@@ -79,7 +79,7 @@ def from_deeplabcut(table: pandas.DataFrame | str | os.PathLike[str], likelihood
         A position below it counts as not seen.
     """
     likelihood = _check.real(likelihood, "likelihood", 0.0, 1.0)
-    if not hasattr(table, "columns"):
+    if isinstance(table, (str, os.PathLike)):
         table = _read_deeplabcut(os.fspath(table))
     if getattr(table.columns, "nlevels", 1) < 2:
         raise ValueError("a table of DeepLabCut has several header rows (scorer, bodyparts, coords); this "

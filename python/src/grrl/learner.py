@@ -159,14 +159,14 @@ class Learner:
     def __init__(self, policy: str | Policy = "learn", *, seed: int = 1, noise: float = 0.0007,
                  capacity: int = 1000, large: float = 0.15, trial_reward: float = 1.0,
                  **parameters: float) -> None:
+        self.seed = _check.whole(seed, "seed", 0, 2**64 - 1)
         options = {
-            "seed": _check.whole(seed, "seed", 0, 2**64 - 1),
+            "seed": self.seed,
             "noise_m": max(_LEAST_NOISE_M, _check.real(noise, "noise", 0.0, 1.0)),
             "capacity": _check.whole(capacity, "capacity", 1, 1_000_000),
             "large_m": _check.real(large, "large", 1e-6, 1000.0),
             "trial_reward": _check.real(trial_reward, "trial_reward", 0.0, 1000.0),
         }
-        self.seed = options["seed"]
         adapter = None
         self._own: Any = None
         if isinstance(policy, str):
@@ -177,7 +177,8 @@ class Learner:
                 raise TypeError(f"a policy of your own takes no parameters: {', '.join(parameters)}")
         for name, value in parameters.items():
             parameters[name] = _check.real(value, name, -1e30, 1e30)
-        self._native = _native.Learner(policy if adapter is None else "", adapter, options, parameters)
+        name = policy if isinstance(policy, str) else ""
+        self._native = _native.Learner(name, adapter, options, parameters)
 
     def begin_trial(self, trial: int) -> None:
         """Starts with a new object or a new pose; abandons an unfinished trial.

@@ -217,10 +217,12 @@ def _joints(raw: dict[str, Any]) -> tuple[Joint, ...]:
         kind = TYPES[raw["joint_type"][i]]
         p = [float(x) for x in raw["joint_p"][i]]
         lower, upper = raw["joint_range"][i]
-        joints.append(Joint(int(a), int(b), kind, *p, raw["joint_point"][i], raw["joint_covariance"][i],
-                            raw["joint_axis"][i] if kind == "prismatic" else None,
-                            float(raw["joint_axis_sd"][i]), float(lower), float(upper),
-                            None if motion is None else motion[i]))
+        joints.append(Joint(
+            int(a), int(b), kind, probability=p[0], p_revolute=p[1], p_prismatic=p[2],
+            p_disconnected=p[3], point=raw["joint_point"][i], covariance=raw["joint_covariance"][i],
+            axis=raw["joint_axis"][i] if kind == "prismatic" else None,
+            axis_sd=float(raw["joint_axis_sd"][i]), lower=float(lower), upper=float(upper),
+            motion=None if motion is None else motion[i]))
     return tuple(joints)
 
 

@@ -34,7 +34,7 @@ def _draw_pivot(ax: Axes, joint: Joint) -> None:
 
 def _draw_axis(ax: Axes, model: Model, joint: Joint) -> None:
     reach = 0.6 * (model.bodies[joint.a].length + model.bodies[joint.b].length)
-    ends = joint.point + reach * np.outer([-1, 1], joint.axis)
+    ends = joint.point + reach * np.outer([-1, 1], np.asarray(joint.axis))
     ax.plot(ends[:, 0], ends[:, 1], "--", color=_INK, linewidth=2)
 
 
@@ -50,7 +50,7 @@ def plot_model(model: Model, ax: Axes | None = None) -> Axes:
         at = model.positions[model.body_of == i]
         ax.scatter(at[:, 0], at[:, 1], s=36, color=colour_of(i), edgecolors="white",
                    label=f"{body.name}: {len(at)} features")
-        ax.annotate(body.name, body.centroid, xytext=(8, 8), textcoords="offset points",
+        ax.annotate(body.name, (body.centroid[0], body.centroid[1]), xytext=(8, 8), textcoords="offset points",
                     color=colour_of(i), weight="bold")
     still = model.positions[model.body_of == BACKGROUND]
     loose = model.positions[model.body_of < BACKGROUND]

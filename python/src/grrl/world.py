@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -291,6 +290,7 @@ def run_trial(learner: Learner, object: str, trial: int = 1, *, seed: int | None
     noise : float
         Of a point, metres; the learner should assume as much.
     """
+    _check.whole(trial, "trial", 1, 2**31 - 1)
     supervisor = Supervisor(object)
     world = World(object, learner.seed if seed is None else seed, trial, noise=noise)
     cap = _check.whole(cap, "cap", 1, 1_000_000)
@@ -314,4 +314,4 @@ def run_trial(learner: Learner, object: str, trial: int = 1, *, seed: int | None
         wrong.update(supervisor.wrong_joints(world, learner))
         found = supervisor.judge(learner).correct
         rewards.append(learner.learn(found).reward)
-    return TrialResult(operator.index(trial), len(actions), found, len(wrong), actions, rewards)
+    return TrialResult(int(trial), len(actions), found, len(wrong), actions, rewards)
