@@ -1,6 +1,6 @@
 """A policy of one's own: the longest body first, no push twice while nothing new is known.
 
-    python -m grrl.experiment --object RPRPRPR --policy learn,examples/longest_first.py:LongestFirst --out out
+    python -m grrl.experiment --object RPRPRPR --out out --policy longest_first.py:LongestFirst
 """
 
 

@@ -194,7 +194,7 @@ void bind_model(nb::module_ &m)
             "__len__", [](const Frame &frame) { return frame.id.size(); })
         .def_prop_ro(
             "ids", [](const Frame &frame) { return array_of(frame.id, {frame.id.size()}); },
-            "(n,) int32: the number of each point, in ascending order.")
+            nb::rv_policy::automatic, "(n,) int32: the number of each point, in ascending order.")
         .def_prop_ro(
             "points",
             [](const Frame &frame) {
@@ -204,7 +204,7 @@ void bind_model(nb::module_ &m)
                         at.push_back(static_cast<double>(x));
                 return array_of(std::move(at), {frame.id.size(), 2});
             },
-            "(n, 2) float64: positions, metres.")
+            nb::rv_policy::automatic, "(n, 2) float64: positions, metres.")
         .def_ro("time_s", &Frame::time_s, "Seconds since the world began.");
 }
 

@@ -64,6 +64,6 @@ def test_everything_public_is_documented_and_typed():
 
 
 def test_nothing_is_left_at_exit():
-    done = subprocess.run([sys.executable, "-c", EVERYTHING], capture_output=True, text=True, check=False,
-                          env={**os.environ, "GRRL_LEAK_WARNINGS": "1"})
+    done = subprocess.run([sys.executable, "-c", EVERYTHING], capture_output=True, text=True,
+                          check=False, env={**os.environ, "GRRL_LEAK_WARNINGS": "1"})
     assert (done.returncode, done.stderr) == (0, "")

@@ -44,8 +44,8 @@ def positions(value: Any, name: str, shape: str, ndim: int) -> np.ndarray:
     missing = np.isnan(single)
     half = np.argwhere(missing[..., 0] != missing[..., 1])
     if half.size:
-        raise ValueError(f"{name}{[int(i) for i in half[0]]} has only one coordinate; both are NaN for a point that was "
-                         "not seen")
+        raise ValueError(f"{name}{[int(i) for i in half[0]]} has only one coordinate; both are NaN for "
+                         "a point that was not seen")
     return single
 
 

@@ -17,8 +17,9 @@ import multiprocessing
 import os
 import pathlib
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Iterator
+from typing import Any
 
 from . import _native
 from .learner import Learner
@@ -73,8 +74,8 @@ def load_policy(name: str) -> Any:
         return name
     where, colon, kind = name.rpartition(":")
     if not colon or not kind.isidentifier():
-        raise ValueError(f"policy {name}: must be one of {', '.join(_native.POLICIES)}, or FILE.py:CLASS "
-                         "or MODULE:CLASS")
+        raise ValueError(f"policy {name}: must be one of {', '.join(_native.POLICIES)}, or "
+                         "FILE.py:CLASS or MODULE:CLASS")
     try:
         found = getattr(_module(where), kind)
     except (ImportError, OSError, AttributeError, SyntaxError) as error:

@@ -82,8 +82,8 @@ def from_deeplabcut(table: pandas.DataFrame | str | os.PathLike[str], likelihood
     if isinstance(table, (str, os.PathLike)):
         table = _read_deeplabcut(os.fspath(table))
     if getattr(table.columns, "nlevels", 1) < 2:
-        raise ValueError("a table of DeepLabCut has several header rows (scorer, bodyparts, coords); this "
-                         "one has a single one: see grrl.io.from_csv")
+        raise ValueError("a table of DeepLabCut has several header rows (scorer, bodyparts, coords); "
+                         "this one has a single one: see grrl.io.from_csv")
     parts: dict[Any, dict[str, int]] = {}
     for place, name in enumerate(table.columns):
         parts.setdefault(name[:-1], {})[name[-1]] = place

@@ -79,11 +79,12 @@ def perceive(tracks: np.ndarray | pandas.DataFrame | Tracks, unit: str | None = 
         raise ValueError("unit is needed: 'px', 'mm' or 'm', what the positions are in")
     unit, profile = _check.unit_and_profile(unit, profile)
     lost = recording.lost
+    drop_lost = bool(drop_lost) and not recording.cleaned
     raw = _native.perceive(
         recording.ids, np.ascontiguousarray(recording.xy[:, 0]),
         np.ascontiguousarray(recording.xy[:, 1]), recording.count, recording.frames,
         recording.pushing, recording.settled, unit, profile, _noise(noise),
-        (lost.get("empty", 0), lost.get("marked", 0), lost.get("frozen", 0)), bool(drop_lost) and not recording.cleaned, said,
+        (lost.get("empty", 0), lost.get("marked", 0), lost.get("frozen", 0)), drop_lost, said,
         bool(motion))
     warnings = recording.warnings + tuple(_in_python(text) for text in raw["warnings"])
     return model_from(raw, unit, frames=recording.frames, profile=profile, noise=raw["noise"],

@@ -50,8 +50,8 @@ def plot_model(model: Model, ax: Axes | None = None) -> Axes:
         at = model.positions[model.body_of == i]
         ax.scatter(at[:, 0], at[:, 1], s=36, color=colour_of(i), edgecolors="white",
                    label=f"{body.name}: {len(at)} features")
-        ax.annotate(body.name, (body.centroid[0], body.centroid[1]), xytext=(8, 8), textcoords="offset points",
-                    color=colour_of(i), weight="bold")
+        ax.annotate(body.name, (body.centroid[0], body.centroid[1]), xytext=(8, 8),
+                    textcoords="offset points", color=colour_of(i), weight="bold")
     still = model.positions[model.body_of == BACKGROUND]
     loose = model.positions[model.body_of < BACKGROUND]
     ax.scatter(still[:, 0], still[:, 1], s=20, color="#bbbbbb")

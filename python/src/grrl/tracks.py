@@ -184,8 +184,8 @@ def _find(columns: dict[str, Any], names: tuple[str, ...]) -> Any:
     for name in names:
         if name in columns:
             return columns[name]
-    raise ValueError(f"the table has no column {' or '.join(names)}; it has {', '.join(columns)}; needed "
-                     "are frame, point, x and y (or x_px and y_px)")
+    raise ValueError(f"the table has no column {' or '.join(names)}; it has {', '.join(columns)}; "
+                     "needed are frame, point, x and y (or x_px and y_px)")
 
 
 def _column(table: pandas.DataFrame, name: Any) -> np.ndarray:
