@@ -373,13 +373,18 @@ nb::dict perceive(const Ids &id, const Floats &x, const Floats &y, const Counts 
     return answer_of(run, with_motion);
 }
 
-nb::dict read_csv(const std::string &path)
+/* path: as the file system has it, which need not be UTF-8. */
+nb::dict read_csv(const nb::bytes &name)
 {
+    const std::string path(name.c_str(), name.size());
+    if (path.find('\0') != std::string::npos)
+        throw nb::value_error("a path cannot hold a null character");
     Tracks tracks;
     grrl_tracks_error error{};
     std::FILE *file = std::fopen(path.c_str(), "r");
     if (file == nullptr) {
-        PyErr_SetFromErrnoWithFilename(PyExc_OSError, path.c_str());
+        PyErr_SetFromErrnoWithFilenameObject(
+            PyExc_OSError, nb::steal(PyUnicode_DecodeFSDefault(path.c_str())).ptr());
         throw nb::python_error();
     }
     bool good = grrl_tracks_read_csv(file, path.c_str(), &tracks.all, &error);

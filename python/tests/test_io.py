@@ -1,6 +1,7 @@
 """Readers give the tracks that other programs wrote."""
 
 import json
+import os
 import struct
 
 import numpy as np
@@ -115,6 +116,15 @@ def test_csv_errors_name_the_place(tmp_path):
         io.from_csv(path)
     with pytest.raises(FileNotFoundError, match="none.csv"):
         io.from_csv(tmp_path / "none.csv")
+    with pytest.raises(ValueError, match="null character"):
+        io.from_csv(f"{path}\0more")
+    with pytest.raises(TypeError):
+        io.from_csv(3)
+    odd = os.fsdecode(bytes(tmp_path) + b"/\xff.csv")
+    with pytest.raises(FileNotFoundError):
+        io.from_csv(odd)
+    write_csv(odd, hinge())
+    assert io.from_csv(odd).count.size == 40
     with pytest.raises(TypeError, match="grrl.io.from_csv"):
         grrl.perceive(str(path), "mm")
 

@@ -34,7 +34,7 @@ def from_csv(path: str | os.PathLike[str], unit: str | None = None) -> Tracks:
     OSError
         The file cannot be read.
     """
-    raw = _native.read_csv(os.fspath(path))
+    raw = _native.read_csv(os.fsencode(path))
     if raw["in_pixels"] and unit is None:
         unit = "px"
     return Tracks(ids=raw["id"], xy=np.stack([raw["x"], raw["y"]], axis=1), count=raw["count"],

@@ -45,7 +45,10 @@ def plot_model(model: Model, ax: Axes | None = None) -> Axes:
     except ImportError:
         raise ImportError("plot() needs matplotlib: pip install 'grrl[plot]'") from None
     if ax is None:
-        _, ax = plt.subplots()
+        _, ax = plt.subplots(figsize=(9, 6), layout="constrained")
+        beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
+    else:
+        beside = {"loc": "best"}
     for i, body in enumerate(model.bodies):
         at = model.positions[model.body_of == i]
         ax.scatter(at[:, 0], at[:, 1], s=36, color=colour_of(i), edgecolors="white",
@@ -70,5 +73,5 @@ def plot_model(model: Model, ax: Axes | None = None) -> Axes:
     ax.set_ylabel(f"y ({model.unit})")
     ax.set_title(model.term, fontsize="small", family="monospace", wrap=True)
     if model.bodies:
-        ax.legend(loc="best", fontsize="small")
+        ax.legend(fontsize="small", **beside)
     return ax
