@@ -1,8 +1,8 @@
 /*
- * bench.h: what the parts of grrl-bench share.
+ * bench.h: shared by the parts of grrl-bench.
  *
- * A peer is another program's matcher behind three functions. It sees the same pairs as the library
- * in the same run, so that ratios hold whatever the machine does.
+ * A peer is another program's matcher behind three functions. It receives the same pairs as the
+ * library in the same run, so that ratios are independent of the machine's load.
  */
 #ifndef GRRL_BENCH_H
 #define GRRL_BENCH_H
@@ -20,7 +20,7 @@ enum bench_shape { BENCH_CHAIN, BENCH_TREE, BENCH_LOOP, BENCH_LOOPS, BENCH_SHAPE
 
 enum bench_question {
     BENCH_ISO_YES,
-    BENCH_ISO_NO, /* one joint or label is another, all counts the same */
+    BENCH_ISO_NO, /* one joint or label differs, all counts are equal */
     BENCH_MONO_YES,
     BENCH_MONO_NO,
     BENCH_QUESTIONS
@@ -33,12 +33,12 @@ struct bench_pair {
     bool matches;
 };
 
-/* A matcher, with its own form of a graph; NULL pointers: not built in. */
+/* A matcher with its own representation of a graph; NULL pointers: not built in. */
 struct bench_peer {
     const char *name;
     void *(*build)(const struct grrl_graph *graph);
     void (*destroy)(void *graph);
-    /* 1: a mapping exists; 0: none; -1: cannot be asked this. */
+    /* 1: a mapping exists; 0: none; -1: not supported. */
     int (*match)(enum grrl_match_kind kind, const void *pattern, const void *target);
 };
 
@@ -53,34 +53,33 @@ extern const struct bench_peer bench_nauty;
 #endif
 
 #ifdef GRRL_BENCH_NETWORKX
-/* Nanoseconds of a query and of building both graphs, as Python counts them; false: it failed. */
+/* Nanoseconds per query and to build both graphs, measured in Python; false on failure. */
 bool bench_networkx(const struct bench_pair *pairs, unsigned n, double *match_ns, double *build_ns);
 #endif
 
-/* Nanoseconds this thread has had a processor: others on the machine do not count. */
+/* CPU time of this thread in nanoseconds, so that other processes do not count. */
 double bench_now_ns(void);
 
-/* Nanoseconds of a sorted sample below which the share lies. */
+/* The quantile of a sorted sample, in nanoseconds. */
 double bench_quantile(const double *sorted, size_t n, double share);
 void bench_sort(double *values, size_t n);
 
-/* A random graph of n links of a shape: joints of both types, two labels. */
+/* Makes a random graph of n links and a given shape: joints of both types, two labels. */
 void bench_graph(struct grrl_random *random, enum bench_shape shape, uint8_t n,
                  struct grrl_graph *graph);
 
-/* A pair whose answer is known. */
+/* Makes a pair with a known answer. */
 void bench_pair(struct grrl_random *random, enum bench_shape shape, enum bench_question question,
                 uint8_t n, struct bench_pair *pair);
 
-/* `legs` equal legs of three links around a hub; in pattern and target another joint of one leg is
- * prismatic, so that all counts of links and joints agree and nothing matches. */
+/* Makes `legs` equal legs of three links around a hub. Pattern and target differ in which joint of
+ * one leg is prismatic, so that all counts of links and joints agree but nothing matches. */
 void bench_near_miss(uint8_t legs, struct bench_pair *pair);
 
-/* The same, the target with one more leg: no part of it. */
+/* The same, but the target has one more leg, and the pattern is still not a part of it. */
 void bench_near_part(uint8_t legs, struct bench_pair *pair);
 
-/* Nanoseconds to make one graph of so many links and to give it up again; NULL: the library, out of
- * a term. */
+/* Nanoseconds to build a graph of this many links and free it; NULL: the library, from a term. */
 double bench_build(const struct bench_peer *peer, uint8_t links);
 
 int bench_match(bool json, unsigned n_pairs);

@@ -1,4 +1,5 @@
-/* The time to make one graph: for the library out of a term, for a peer out of what it is given. */
+/* Measures the time to build one graph: for the library from a term, for a peer from its usual
+ * input. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,11 +1,11 @@
 /*
- * grrl-bench evict: what a full store still knows, next to other ways of making room.
+ * grrl-bench evict: compares what a full store still knows under several eviction rules.
  *
- * The stream is one of trials: an object, most often the one before, else one of many of which some
- * are much more frequent; its structure is discovered link by link, and in each state some actions
- * are tried, most often the two that this state has found to work. An update finds its experience
- * or has to make a new one; counted is how often it finds it. The library's store is run itself,
- * the others are told which experience is meant by a store that never forgets.
+ * The stream consists of trials. Each has an object: usually the previous one, else one of many,
+ * some of them much more frequent. Its structure is discovered link by link, and in each state some
+ * actions are tried, most often the two that have worked there. The measure is how often an update
+ * finds its experience instead of making a new one. The library's store runs itself; the other
+ * rules are simulated on the sequence of experiences, taken from a store that never forgets.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ enum { N_OBJECTS = 60, N_UPDATES = 60000, NEVER = N_UPDATES };
 struct stream {
     struct grrl_graph objects[N_OBJECTS];
     struct grrl_random random;
-    struct grrl_graph object; /* its links in the order of their discovery */
+    struct grrl_graph object; /* its links are in order of discovery */
     unsigned known;           /* links discovered */
     unsigned which;
 };
@@ -35,7 +35,7 @@ static void next_trial(struct stream *stream)
     stream->known = 1;
 }
 
-/* The next update: a state, and an action on one of its links. */
+/* Draws the next update: a state, and an action on one of its links. */
 static void next_update(struct stream *stream, struct grrl_graph *state, uint8_t *link,
                         uint8_t *direction)
 {
@@ -67,7 +67,8 @@ static void start_stream(struct stream *stream)
     next_trial(stream);
 }
 
-/* Runs a store; experience[i] becomes that of update i. Returns the share that was known. */
+/* Runs a store; experience[i] is set to that of update i. Returns the share of updates that found
+ * theirs. */
 static double run_store(uint32_t capacity, uint32_t *experience)
 {
     static struct stream stream;
@@ -99,7 +100,7 @@ enum rule { RULE_RANDOM, RULE_FIRST_IN, RULE_FARTHEST, RULES };
 static const char *const rule_names[RULES] = {"random", "first in, first out",
                                               "the future known (bound)"};
 
-/* Which of the kept ones makes room. */
+/* Which of the kept experiences is evicted. */
 static unsigned choose(enum rule rule, const uint32_t *kept, const uint32_t *next_use,
                        unsigned capacity, unsigned *oldest, struct grrl_random *random)
 {

@@ -1,4 +1,4 @@
-/* grrl-bench: how fast matching and retrieval are, next to what others offer. */
+/* grrl-bench: the speed of matching and retrieval, compared with other programs. */
 #include <string.h>
 
 #include "bench.h"
@@ -7,15 +7,15 @@
 static const struct grrl_program program = {
     .name = "grrl-bench",
     .usage = "grrl-bench match|retrieve|evict|perceive [OPTION]...",
-    .intro =
-        "\n"
-        "match     nanoseconds a query for pairs of structures of 4 to 32 links: the library with\n"
-        "          and without stored plans, and the peers it was built with\n"
-        "retrieve  nanoseconds a query among 1000 and 100000 stored states\n"
-        "evict     the share of updates that a full store knows the experience of\n"
-        "perceive  milliseconds of perception by links, features and keyframes\n",
+    .intro = "\n"
+             "match     nanoseconds per query for pairs of structures of 4 to 32 links: the "
+             "library with\n"
+             "          and without stored plans, and the peers it was built with\n"
+             "retrieve  nanoseconds per query among 1000 and 100000 stored states\n"
+             "evict     the share of updates whose experience a full store still has\n"
+             "perceive  milliseconds of perception by links, features and keyframes\n",
     .most_arguments = 1,
-    .arguments = "one measurement at a time",
+    .arguments = "give only one measurement",
 };
 
 int main(int argc, char **argv)
@@ -24,7 +24,8 @@ int main(int argc, char **argv)
     uint32_t n_pairs = 64;
     const struct grrl_option rows[] = {
         grrl_option_flag("json", "one JSON array instead of a table", &json),
-        grrl_option_u32("pairs", "N", "pairs a case, 1 to 256 (64); match only", 1, 256, &n_pairs),
+        grrl_option_u32("pairs", "N", "pairs per case, 1 to 256 (64); match only", 1, 256,
+                        &n_pairs),
     };
     int first;
     enum grrl_options_result parsed =
@@ -40,5 +41,5 @@ int main(int argc, char **argv)
         return bench_evict(json);
     if (strcmp(command, "perceive") == 0)
         return bench_perceive(json);
-    return grrl_options_wrong(&program, "say what to measure: match, retrieve, evict or perceive");
+    return grrl_options_wrong(&program, "give one of match, retrieve, evict or perceive");
 }

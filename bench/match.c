@@ -10,7 +10,7 @@
 
 enum { MOST_PAIRS = 256, MOST_PEERS = 6, SWEEPS = 7, N_SIZES = 4, PATIENCE_S = 4 };
 
-/* A sweep over the pairs lasts at least this long, by repetition. */
+/* A sweep over the pairs is repeated until it lasts at least this long. */
 #define SWEEP_NS 2e5
 
 static const uint8_t sizes[N_SIZES] = {4, 8, 16, 32};
@@ -33,7 +33,7 @@ static void *allocate(size_t size)
     return memory;
 }
 
-/* A copy: what a term is read into is the library's form already (see the time for a term). */
+/* A copy: a parsed term is already in the library's form (see the time for a term). */
 static void *build_graph(const struct grrl_graph *graph)
 {
     struct grrl_graph *built = allocate(sizeof *built);
@@ -94,12 +94,12 @@ static unsigned list_peers(const struct bench_peer **peers)
 
 /* --- measuring -------------------------------------------------------------------------------- */
 
-/* Nanoseconds a query. */
+/* Nanoseconds per query. */
 struct times {
-    double mean; /* median over sweeps of the mean over pairs: branches are not learned by heart */
+    double mean; /* median over sweeps of the mean over pairs, against learned branches */
     double median;
     double p99;
-    double worst; /* of the pairs, each the best of a few */
+    double worst; /* over the pairs, each the best of a few runs */
     double build; /* of both graphs */
 };
 
@@ -193,8 +193,8 @@ static bool measure_here(const struct bench_peer *peer, const struct bench_pair 
     return able;
 }
 
-/* In a process of its own for some seconds: a peer may never end. False: it cannot be asked this,
- * or it did not end. */
+/* Measures in a child process with a time limit, because a peer may never finish. False: not
+ * supported, or did not finish. */
 static bool measure(const struct bench_peer *peer, const struct bench_pair *pairs, unsigned n,
                     struct times *times)
 {
@@ -218,7 +218,7 @@ static bool measure(const struct bench_peer *peer, const struct bench_pair *pair
 
 /* --- reports ---------------------------------------------------------------------------------- */
 
-/* Of one peer on the cases of a row, as sums of logarithms: geometric means. */
+/* One peer's results on the cases of a row, as sums of logarithms, for geometric means. */
 struct row {
     double mean;
     double built;
@@ -245,7 +245,7 @@ static void print_rows(const struct bench_peer **peers, unsigned n_peers, const 
     for (unsigned p = 0; p < n_peers; p++) {
         const struct row *row = &rows[p];
         if (row->n == 0)
-            continue; /* cannot be asked */
+            continue; /* not supported */
         if (row->n < BENCH_SHAPES) {
             (void)printf("| %2u | %s | %s | no end on %u of %d shapes |\n", (unsigned)n, what,
                          peers[p]->name, BENCH_SHAPES - row->n, BENCH_SHAPES);
@@ -267,7 +267,7 @@ static bool measure_networkx(const struct bench_pair *pairs, unsigned n, struct 
 {
     if (!bench_networkx(pairs, n, &times->mean, &times->build))
         return false;
-    times->median = times->p99 = times->worst = times->mean; /* it tells no more */
+    times->median = times->p99 = times->worst = times->mean; /* one run has no distribution */
     return true;
 }
 #endif
@@ -314,7 +314,7 @@ static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
         print_rows(peers, n_peers, rows, n, question_names[question]);
 }
 
-/* The symmetric worst cases, each once: a peer may need seconds. */
+/* Runs each symmetric worst case once, because a peer may need seconds. */
 static void run_symmetric(bool json, bool *first)
 {
     static const struct {
@@ -360,14 +360,14 @@ static void run_symmetric(bool json, bool *first)
     }
 }
 
-/* The library first, out of a term. */
+/* The library comes first, from a term. */
 static void run_building(bool json, bool *first, uint8_t n)
 {
     const struct bench_peer *peers[MOST_PEERS];
     unsigned n_peers = list_peers(peers);
     double own = bench_build(NULL, n);
     for (unsigned p = 1; p < n_peers; p++) {
-        bool library = p == 1; /* its plans are not what is asked for */
+        bool library = p == 1; /* its plans are not measured here */
         double spent = library ? own : bench_build(peers[p], n);
         struct times times = {spent, spent, spent, spent, 2 * spent};
         if (json)

@@ -1,4 +1,4 @@
-/* Random pairs of structures for the matchers, and the clock and quantiles of all benches. */
+/* Random pairs of structures for the matchers, and the clock and quantiles of all benchmarks. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -73,7 +73,7 @@ static void shuffled(struct grrl_random *random, const struct grrl_graph *graph,
     grrl_graph_permute(graph, order, result);
 }
 
-/* Exchanges the labels of two links or the types of two joints. */
+/* Swaps the labels of two links or the types of two joints. */
 static void exchange(struct grrl_random *random, struct grrl_graph *graph)
 {
     uint8_t a = (uint8_t)grrl_random_below(random, graph->n);
@@ -95,7 +95,7 @@ static void exchange(struct grrl_random *random, struct grrl_graph *graph)
             graph->joined[type][ends[i][0]] ^= UINT32_C(1) << ends[i][1];
 }
 
-/* Takes away the links from `n` on, in an order in which the rest stays connected. */
+/* Removes all but n links, in an order that keeps the rest connected. */
 static void take_part(const struct grrl_graph *graph, uint8_t n, struct grrl_graph *part)
 {
     *part = *graph;

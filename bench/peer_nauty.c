@@ -1,7 +1,7 @@
 /*
- * nauty: canonical forms by densenauty, isomorphism only. Joint types make two layers of each link:
- * revolute joints in the first, prismatic ones in the second, a link's two layers joined (the nauty
- * manual's way for coloured edges). Both graphs are canonised in every query.
+ * nauty: canonical forms by densenauty, isomorphism only. Joint types become two layers per link:
+ * revolute joints in the first, prismatic ones in the second, with a link's two layers connected
+ * (the nauty manual's method for coloured edges). Every query canonises both graphs.
  */
 #include <nauty/nauty.h>
 #include <stdlib.h>

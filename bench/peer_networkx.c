@@ -1,4 +1,4 @@
-/* NetworkX: one Python process for the whole run, which takes the times itself. */
+/* NetworkX: one Python process for the whole run, which measures its own times. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>

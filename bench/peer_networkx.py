@@ -1,9 +1,8 @@
-"""NetworkX behind pipes: reads cases from stdin, answers with times measured in here.
+"""NetworkX behind pipes: reads cases from stdin and answers with times measured in this process.
 
-A case is a line `kind pairs` (kind: iso or mono), then two lines for each pair, the pattern
-and the target: links, their labels, joints, and two ends and a type for each joint. The answer is a
-line: the mean time of a query and of building both graphs in nanoseconds, then 0 or 1 for each
-pair.
+A case is a line `kind pairs` (kind: iso or mono), then two lines per pair, the pattern and the
+target: links, their labels, joints, and two ends and a type for each joint. The answer is one line:
+the mean times of a query and of building both graphs in nanoseconds, then 0 or 1 for each pair.
 """
 import sys
 import time

@@ -1,6 +1,7 @@
 /*
- * What perception costs: chains of links that are moved joint by joint at random, some ten or
- * twenty features a link, until the memory of keyframes is full and two more rounds.
+ * grrl-bench perceive: the cost of perception. Chains of links are moved joint by joint at random,
+ * with at least ten or twenty features per link, until the keyframe memory is full and for two
+ * rounds more.
  */
 #include <stdio.h>
 #include <string.h>
@@ -12,10 +13,10 @@ enum { SEEDS = 5, PUSHES = 40, MARKS = 3, PUSH_FRAMES = 130 };
 
 struct size {
     int links;
-    int features_a_link; /* at least */
+    int features_a_link; /* minimum */
 };
 
-/* Of all pushes after which there were so many keyframes, or a quarter fewer. */
+/* Sums over pushes that left this number of keyframes, or up to a quarter fewer. */
 struct sum {
     double update_ns;
     double push_ns; /* all frames and the update */
@@ -77,7 +78,7 @@ static bool measure(const struct size *size, uint64_t seed, struct sum *sums)
         double made_ns = bench_now_ns();
         for (int f = 0; f < PUSH_FRAMES; f++)
             (void)world_frame(&world);
-        made_ns = bench_now_ns() - made_ns; /* what the world itself takes */
+        made_ns = bench_now_ns() - made_ns; /* time of the test world itself */
         double start_ns = bench_now_ns();
         world_move(&world, &perception, dq, shift, 0.05f);
         double moved_ns = bench_now_ns();

@@ -8,10 +8,10 @@
 enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4 };
 
 enum query {
-    QUERY_STORED, /* a stored state, its links in another order */
+    QUERY_STORED, /* a stored state, its links in a different order */
     QUERY_PART,   /* a stored state without one link */
     QUERY_WHOLE,  /* a stored state with one more link */
-    QUERY_FRESH,  /* one of the same kind as the stored ones */
+    QUERY_FRESH,  /* a new one of the same kind as the stored ones */
     QUERIES
 };
 
@@ -40,7 +40,7 @@ static void random_state(struct grrl_random *random, struct grrl_graph *graph)
     bench_graph(random, (enum bench_shape)grrl_random_below(random, BENCH_SHAPES), n, graph);
 }
 
-/* Fills a store with n different states, one to six actions each. */
+/* Fills a store with n different states, with one to six actions each. */
 static void fill(struct setup *setup, uint32_t n, bool with_index)
 {
     grrl_random_init(&setup->random, 20080625u, n);

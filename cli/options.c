@@ -1,4 +1,4 @@
-/* options.c: rows, getopt's table made of them, --help, and the messages. */
+/* options.c: builds getopt's table from the rows, prints --help and reports errors. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "cli/options.h"
@@ -19,7 +19,7 @@
 
 enum { RIGHT_BYTES = 100 };
 
-/* getopt's value of row i is FIRST_ID + i, above all characters. */
+/* getopt's value for row i is FIRST_ID + i, above all characters. */
 enum { ID_HELP = 'h', ID_VERSION = 'v', FIRST_ID = 256 };
 
 /* --- rows ------------------------------------------------------------------------------------- */
@@ -103,7 +103,7 @@ bool grrl_option_integer_of(const char *text, uint64_t low, uint64_t high, uint6
     char *end;
     errno = 0;
     unsigned long long parsed = strtoull(text, &end, 10);
-    bool digits = text[0] >= '0' && text[0] <= '9'; /* strtoull would take " -1" */
+    bool digits = text[0] >= '0' && text[0] <= '9'; /* strtoull would accept " -1" */
     if (!digits || *end != '\0' || errno != 0 || parsed < low || parsed > high)
         return false;
     *value = parsed;
@@ -151,7 +151,7 @@ static const char *take_number(const struct grrl_option *option, const char *tex
     return NULL;
 }
 
-/* NULL, or what the value must be, perhaps in right[RIGHT_BYTES]. */
+/* Returns NULL, or what the value must be; the text may lie in right[RIGHT_BYTES]. */
 static const char *take(const struct grrl_option *option, const char *text, char *right)
 {
     switch (option->kind) {
@@ -191,7 +191,7 @@ static void print_row(const struct grrl_option *option, int width)
 static void print_help(const struct grrl_program *program, const struct grrl_option *options,
                        size_t n)
 {
-    const struct grrl_option own[] = {grrl_option_flag("help", "print this text", NULL),
+    const struct grrl_option own[] = {grrl_option_flag("help", "print this help", NULL),
                                       grrl_option_flag("version", "print the version", NULL)};
     int width = width_of(&own[1]);
     for (size_t i = 0; i < n; i++)
@@ -255,7 +255,7 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
     bool given[GRRL_OPTIONS_MOST] = {false};
     assert(n <= GRRL_OPTIONS_MOST);
     make_getopt_table(options, n, table);
-    optind = 0; /* starts getopt anew */
+    optind = 0; /* restarts getopt */
     int id;
     while ((id = getopt_long(argc, argv, "h", table, NULL)) != -1) {
         if (id == '?')

@@ -1,5 +1,5 @@
-# Finds Box2D 2.4. Box2D 3 has another interface (C, ids instead of classes); its package is refused
-# by name, whatever it claims to be compatible with.
+# Finds Box2D 2.4. Box2D 3 has another interface (C, ids instead of classes), so its package is
+# rejected by name, whatever compatibility it claims.
 find_package(box2d 2.4 CONFIG QUIET)
 if(NOT box2d_FOUND OR box2d_VERSION VERSION_GREATER_EQUAL 3)
     set(found "")

@@ -1,5 +1,5 @@
-# The capacities of the library. Their names and defaults are those of grrl/base/config.h; the cache
-# may set another number (empty: the default). The result is the header that config.h looks for.
+# The library's capacities. Names and defaults come from grrl/base/config.h; the cache may override
+# a number (empty: the default). The result is the header that config.h looks for.
 # grrl_write_capacities(CONFIG_H RESULT)
 function(grrl_write_capacities config_h result)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${config_h})
@@ -28,7 +28,7 @@ function(grrl_write_capacities config_h result)
 #ifndef ${name}
 #define ${name} ${value}
 #elif ${name} != ${value}
-#error \"${name}: grrl was built with ${value} (grrl_capacities.h); a -D or #define of the program says otherwise: remove it, or build grrl with the same\"
+#error \"${name}: grrl was built with ${value} (grrl_capacities.h); a -D or #define of the program differs: remove it, or build grrl with the same number\"
 #endif
 ")
     endforeach()

@@ -1,5 +1,5 @@
-# Finds LCM: its own CMake package where there is one (1.5), otherwise the header and the library
-# (Debian's 1.3.1; its lcm.pc asks for GLib's development files, which no user of LCM needs).
+# Finds LCM: by its own CMake package if there is one (1.5), else by header and library (Debian's
+# 1.3.1, whose lcm.pc requires GLib's development files, which no user of LCM needs).
 find_package(lcm CONFIG QUIET)
 add_library(grrl_lcm_transport INTERFACE)
 if(TARGET lcm::lcm)

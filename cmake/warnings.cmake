@@ -1,4 +1,4 @@
-# Warnings and floating-point rules for every target of ours: call grrl_configure(<target>).
+# Warnings and floating-point rules for all our targets: call grrl_configure(<target>).
 # -ffp-contract=off: the same seeds must give the same run on every machine.
 function(grrl_configure target)
     set(common -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Wundef -Wcast-qual

@@ -1,4 +1,4 @@
-/* ablations.cpp: the learners with one thing taken away or made smaller. */
+/* ablations.cpp: the learners with one part removed or made smaller. */
 #include "policies.hpp"
 
 #include "grrl/learner/cases/learn_policy.h"
@@ -22,8 +22,8 @@ grrl_case_config &cases(void *config)
     return *static_cast<grrl_case_config *>(config);
 }
 
-/* A policy of the other table, but for a change. */
-Policy changed(const char *base, const std::string &suffix, const std::string &text,
+/* A copy of a policy from the main table, with one change. */
+Policy variant(const char *base, const std::string &suffix, const std::string &text,
                const Change &change)
 {
     Policy policy;
@@ -40,7 +40,7 @@ void add_capacities(std::vector<Policy> &table, const char *base, const char *wh
 {
     for (int capacity : {32, 64, 128, 256, 1024, 4096}) {
         std::string number = std::to_string(capacity);
-        table.push_back(changed(base, number, "memory for " + number + " " + what, nullptr));
+        table.push_back(variant(base, number, "memory for " + number + " " + what, nullptr));
         table.back().capacity = static_cast<uint16_t>(capacity);
     }
 }
@@ -52,25 +52,25 @@ void add_paper(std::vector<Policy> &table)
         const char *text;
         Change change;
     } rows[] = {
-        {"exact", "nothing but the very same structure is recalled",
+        {"exact", "recalls only the same structure",
          [](grrl_learner_config &, void *c) { paper(c).recall.deepest = GRRL_RECALL_EXACT; }},
-        {"strict", "no property is ever dropped",
+        {"strict", "never drops a property",
          [](grrl_learner_config &, void *c) { paper(c).recall.strict = true; }},
-        {"no-sub", "no sub-structures: same structure, properties may be dropped",
+        {"no-sub", "no sub-structures; the same structure, perhaps without properties",
          [](grrl_learner_config &, void *c) { paper(c).recall.deepest = GRRL_RECALL_RELAXED; }},
-        {"no-phi", "no exploration by phi: the best of the known actions, if any is",
-         [](grrl_learner_config &, void *c) { paper(c).beta = GRRL_PAPER_MOST; }},
-        {"no-ie", "no Interval Estimation: the best mean",
+        {"no-phi", "no exploration by phi: the best known action, if any",
+         [](grrl_learner_config &, void *c) { paper(c).beta = GRRL_PAPER_MAX; }},
+        {"no-ie", "no Interval Estimation: the highest mean",
          [](grrl_learner_config &, void *c) { paper(c).z = 0.0f; }},
-        {"no-size", "no property: every link is small",
+        {"no-size", "no properties: every link is small",
          [](grrl_learner_config &learner, void *) { learner.large_m = 1000.0f; }},
-        {"gamma-0", "nothing but the immediate reward",
+        {"gamma-0", "immediate rewards only",
          [](grrl_learner_config &, void *c) { paper(c).gamma = 0.0f; }},
-        {"gamma-0.9", "later rewards count nearly as much",
+        {"gamma-0.9", "later rewards count nearly as much as immediate ones",
          [](grrl_learner_config &, void *c) { paper(c).gamma = 0.9f; }},
     };
     for (const auto &row : rows)
-        table.push_back(changed("paper", row.suffix, row.text, row.change));
+        table.push_back(variant("paper", row.suffix, row.text, row.change));
     add_capacities(table, "paper", "experiences");
 }
 
@@ -79,20 +79,21 @@ void add_learn(std::vector<Policy> &table)
     static const char *const parts[GRRL_CONTEXT_PARTS] = {
         "direction", "length",    "tried",        "neighbours", "neighbour-length",
         "revolute",  "prismatic", "others-tried", "longer"};
-    table.push_back(changed(
-        "learn", "exact", "nothing but cases of the very same context count",
+    table.push_back(variant(
+        "learn", "exact", "only cases with exactly the same context count",
         [](grrl_learner_config &, void *c) { cases(c).mismatch = 0.0f; }));
-    table.push_back(changed(
-        "learn", "no-bound", "the best estimate, not the best bound",
+    table.push_back(variant(
+        "learn", "no-bound", "the highest estimate instead of the highest bound",
         [](grrl_learner_config &, void *c) { cases(c).bound = 0.0f; }));
-    table.push_back(changed(
-        "learn", "no-doubt", "older rewards count whatever the trial brings",
+    table.push_back(variant(
+        "learn", "no-doubt", "older rewards keep their weight, whatever the trial reveals",
         [](grrl_learner_config &, void *c) { cases(c).confidence = GRRL_MAX_REWARD; }));
-    table.push_back(changed("learn", "no-present", "newer rewards count no more than older ones",
+    table.push_back(variant("learn", "no-present",
+                            "rewards of the current trial get no extra weight",
                             [](grrl_learner_config &, void *c) { cases(c).present = 0.0f; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        table.push_back(changed("learn", std::string("no-") + parts[i],
-                                std::string("without a part of the context: ") + parts[i],
+        table.push_back(variant("learn", std::string("no-") + parts[i],
+                                std::string("ignores a part of the context: ") + parts[i],
                                 [i](grrl_learner_config &, void *c) {
                                     cases(c).parts &= static_cast<uint16_t>(~(1u << i));
                                 }));

@@ -1,4 +1,4 @@
-/* agent_side.cpp: the agent's core with the memory of its policy. */
+/* agent_side.cpp: the agent's core with its policy's memory. */
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -12,7 +12,8 @@ namespace
 {
 
 constexpr int64_t agent_session = 4711;
-constexpr float least_noise_m = 0.00005f; /* to assume: no camera has none */
+constexpr float least_noise_m =
+    0.00005f; /* lower limit of the assumed noise: no camera is perfect */
 
 struct Reader {
     const Bytes *bytes;
@@ -63,14 +64,14 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     config.session_id = agent_session;
     config.now_us = now_us;
     config.context = this;
-    must(grrl_agent_init(agent_.get(), &config, lcm), "the agent does not start");
+    must(grrl_agent_init(agent_.get(), &config, lcm), "the agent cannot start");
     if (experience.empty())
         return;
     Reader reader{&experience, 0};
     grrl_io io{};
     io.context = &reader;
     io.read = read_bytes;
-    must(grrl_learner_load(&agent_->learner, &io), "the experience does not load");
+    must(grrl_learner_load(&agent_->learner, &io), "cannot load the experience");
 }
 
 grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *node,
@@ -91,7 +92,7 @@ grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *nod
     grrl_policy made{};
     must(grrl_policy_make(policy.type, memory_.data(), bytes, policy.capacity,
                           policy.type->config_default != nullptr ? config : nullptr, &made),
-         "the policy does not start");
+         "the policy cannot start");
     return made;
 }
 
@@ -108,7 +109,7 @@ Bytes AgentSide::experience() const
     grrl_io io{};
     io.context = &bytes;
     io.write = append_bytes;
-    must(grrl_learner_save(&agent_->learner, &io), "the experience does not save");
+    must(grrl_learner_save(&agent_->learner, &io), "cannot save the experience");
     return bytes;
 }
 

@@ -1,4 +1,4 @@
-/* chooser.cpp: a chooser behind the library's interface, and what it has tried. */
+/* chooser.cpp: adapts a chooser to the library's policy interface, and records its pushes. */
 #include "chooser.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void begin_trial(void *self)
 
 void choose(void *self, const grrl_view *view, grrl_random *, grrl_choice *choice)
 {
-    chooser_of(self).look(*view->perception);
+    chooser_of(self).observe(*view->perception);
     Action action = chooser_of(self).choose(*view->model);
     *choice = grrl_choice{};
     while (choice->link + 1 < view->model->n_bodies &&
@@ -74,7 +74,7 @@ bool Tried::Joint::operator==(const Joint &other) const
     return std::tie(a, b, type) == std::tie(other.a, other.b, other.type);
 }
 
-void Tried::look(const grrl_model &model)
+void Tried::update(const grrl_model &model)
 {
     std::set<uint16_t> bodies;
     std::set<Joint> joints;

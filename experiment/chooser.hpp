@@ -1,8 +1,8 @@
 /*
- * chooser.hpp: a policy that is not the library's: it sees the estimated model and names a push.
+ * chooser.hpp: a policy of the experiment: it sees the estimated model and names a push.
  *
- * chooser_policy makes it one of the library's interface, so that perception, grounding, the robot
- * and the supervisor are those of every other policy.
+ * chooser_policy adapts it to the library's interface. Perception, grounding, robot and supervisor
+ * are therefore the same as for every other policy.
  */
 #ifndef GRRL_EXPERIMENT_CHOOSER_HPP
 #define GRRL_EXPERIMENT_CHOOSER_HPP
@@ -29,27 +29,29 @@ public:
     virtual ~Chooser() = default;
     virtual void begin_trial() {}
 
-    /* Before each choice: what the model was made from, for one who foresees what comes next. */
-    virtual void look(const grrl_perception & /*perception*/) {}
+    /* Called before each choice with the perception behind the model, for choosers that simulate
+     * it. */
+    virtual void observe(const grrl_perception & /*perception*/) {}
 
-    /* The next push; the model has at least one body. */
+    /* Returns the next push; the model has at least one body. */
     virtual Action choose(const grrl_model &model) = 0;
 };
 
-/* Asks a Chooser, which its memory points to. It learns nothing. */
+/* A policy that asks a Chooser, to which its memory points. It learns nothing. */
 extern const grrl_policy_type chooser_policy;
 
-/* chooser_policy at work; the chooser must outlive it. */
+/* A chooser_policy for this chooser, which must outlive it. */
 grrl_policy policy_of(Chooser &chooser);
 
-/* Which pushes were made since the believed links and joints last changed. */
+/* The pushes made since the estimated links and joints last changed. */
 class Tried
 {
 public:
     void clear() { actions_.clear(); }
 
-    /* The model now: clears if its structure is another one, or if all its pushes were made. */
-    void look(const grrl_model &model);
+    /* Takes the current model. Clears if its structure has changed, or if all its
+     * pushes were made. */
+    void update(const grrl_model &model);
 
     bool has(Action action) const;
     void add(Action action);

@@ -16,21 +16,21 @@ namespace
 
 using grrl_sim::World;
 
-/* Motion after which perception is mostly sure of a joint: twice what it asks for at least. */
+/* Motion after which perception is usually certain of a joint: twice its minimum. */
 constexpr double sure_turn_rad = 0.14;
 constexpr double sure_slide_m = 0.006;
 
-/* What a moved joint counts besides a believed one: it decides among pushes that reveal the same.
- */
-constexpr double moved_share = 0.1;
+/* Value of a moved joint relative to an estimated one; decides among pushes that reveal the
+ * same. */
+constexpr double moved_weight = 0.1;
 
 double sure_motion(const grrl_sim::JointSpec &joint)
 {
     return joint.type == GRRL_REVOLUTE ? sure_turn_rad : sure_slide_m;
 }
 
-/* Joints rightly believed less joints wrongly believed. */
-double rightly_believed(const World &world, const grrl_model &model)
+/* Number of correctly estimated joints minus wrongly estimated ones. */
+double score(const World &world, const grrl_model &model)
 {
     Estimate estimate = estimate_of(model);
     std::vector<bool> known = known_joints(world, estimate);
@@ -56,11 +56,11 @@ public:
     {
     }
     void begin_trial() override { tried_.clear(); }
-    void look(const grrl_perception &perception) override { perception_ = &perception; }
+    void observe(const grrl_perception &perception) override { perception_ = &perception; }
     Action choose(const grrl_model &model) override;
 
 private:
-    double worth(const std::vector<bool> &known, const grrl_sim::PushCommand &command);
+    double value_of(const std::vector<bool> &known, const grrl_sim::PushCommand &command);
 
     std::function<const World &()> world_;
     uint64_t seed_;
@@ -68,8 +68,9 @@ private:
     Tried tried_;
 };
 
-/* How many of the joints not known were moved, as shares of the motion that makes sure. */
-double moved(const World &before, const World &after, const std::vector<bool> &known)
+/* How many unknown joints the push moved, as shares of the motion that makes perception
+ * certain. */
+double moved_joints(const World &before, const World &after, const std::vector<bool> &known)
 {
     double sum = 0.0;
     for (size_t j = 0; j < known.size(); j++) {
@@ -81,8 +82,8 @@ double moved(const World &before, const World &after, const std::vector<bool> &k
     return sum;
 }
 
-/* What would be believed after a push, tried in copies of world and perception. */
-double Clairvoyant::worth(const std::vector<bool> &known, const grrl_sim::PushCommand &command)
+/* The value of a push: the estimate after it, in copies of world and perception. */
+double Clairvoyant::value_of(const std::vector<bool> &known, const grrl_sim::PushCommand &command)
 {
     auto perception = std::make_unique<grrl_perception>(*perception_);
     World copy = world_().copy(seed_++);
@@ -95,10 +96,10 @@ double Clairvoyant::worth(const std::vector<bool> &known, const grrl_sim::PushCo
     }
     for (int i = 0; i < GRRL_SETTLING_FRAMES; i++)
         see(copy, *perception, false);
-    double share = moved_share * moved(world_(), copy, known);
+    double share = moved_weight * moved_joints(world_(), copy, known);
     if (grrl_perception_update(perception.get()) != GRRL_OK)
         return share;
-    return rightly_believed(copy, *grrl_perception_model(perception.get())) + share;
+    return score(copy, *grrl_perception_model(perception.get())) + share;
 }
 
 Action Clairvoyant::choose(const grrl_model &model)
@@ -109,7 +110,7 @@ Action Clairvoyant::choose(const grrl_model &model)
     Action best{model.body[0].number, 0};
     bool any = false;
     double most = 0.0;
-    tried_.look(model);
+    tried_.update(model);
     for (uint8_t body = 0; body < model.n_bodies; body++) {
         for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             grrl_push push;
@@ -117,7 +118,7 @@ Action Clairvoyant::choose(const grrl_model &model)
             if (tried_.has(action) ||
                 grrl_grounding_push(&model, &config, body, direction, &push) != GRRL_OK)
                 continue;
-            double gain = worth(known, grrl_sim::command_of(push));
+            double gain = value_of(known, grrl_sim::command_of(push));
             if (!any || gain > most) {
                 any = true;
                 most = gain;

@@ -1,10 +1,10 @@
 /*
- * clairvoyant.hpp: the greedy choice of somebody who knows the truth, as a bound for all others.
+ * clairvoyant.hpp: the greedy policy that knows the truth, as a bound for all others.
  *
- * Every push of the believed model is tried in a copy of the true world, under the noise that any
- * push has, while a copy of perception watches; the one after which most joints are rightly
- * believed is taken, and none twice while the believed structure stays the same.
- * It reads the truth and therefore lives with the simulator.
+ * It tries every push of the estimated model in a copy of the true world, under the usual noise of
+ * a push, observed by a copy of perception. It takes the push after which the most joints are
+ * estimated correctly. It repeats none while the estimated structure stays the same. It reads the
+ * truth and therefore runs on the simulator's side.
  */
 #ifndef GRRL_EXPERIMENT_CLAIRVOYANT_HPP
 #define GRRL_EXPERIMENT_CLAIRVOYANT_HPP
@@ -19,7 +19,7 @@
 namespace grrl_experiment
 {
 
-/* world: of the trial under way. seed: of the noise in the copies. */
+/* world: of the current trial. seed: of the noise in the copies. */
 std::unique_ptr<Chooser> make_clairvoyant(std::function<const grrl_sim::World &()> world,
                                           uint64_t seed);
 

@@ -1,5 +1,5 @@
-/* files.hpp: whole files, written so that a reader finds the old or the new one, never a part; and
- * fields of CSV. */
+/* files.hpp: reads and writes whole files, and writes CSV fields. A reader finds either the old
+ * file or the new one, never a part. */
 #ifndef GRRL_EXPERIMENT_FILES_HPP
 #define GRRL_EXPERIMENT_FILES_HPP
 
@@ -9,16 +9,16 @@
 namespace grrl_experiment
 {
 
-/* Nothing: it cannot be read. */
+/* Returns nullopt if the file cannot be read. */
 std::optional<std::string> read_file(const std::string &path);
 
 /* Throws std::runtime_error. */
 void write_file(const std::string &path, const std::string &text);
 
-/* With the folders above it. Throws std::runtime_error. */
+/* Creates a folder and its parents. Throws std::runtime_error. */
 void make_folder(const std::string &path);
 
-/* A field of a CSV file, between quotation marks where it needs them. */
+/* A field of a CSV file, quoted if necessary. */
 std::string csv_field(const std::string &text);
 
 } // namespace grrl_experiment

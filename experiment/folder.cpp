@@ -1,4 +1,4 @@
-/* folder.cpp: results kept experiment by experiment, so that a run can go on. */
+/* folder.cpp: stores results experiment by experiment, so that a run can resume. */
 #include "folder.hpp"
 
 #include <cstdio>
@@ -28,7 +28,7 @@ std::string hash_of_file(const std::string &path)
     return text;
 }
 
-/* An object by name; a file also by its content. */
+/* An object by its name; a file also by its content. */
 std::string object_line(const std::string &object)
 {
     return read_file(object) ? object + " (" + hash_of_file(object) + ")" : object;
@@ -51,7 +51,7 @@ std::string settings_of(const Options &options, const Plan &plan)
     return text.str();
 }
 
-/* The first line that two texts do not share, of each of them. */
+/* The first line in which two texts differ, from each of them. */
 std::pair<std::string, std::string> difference(const std::string &a, const std::string &b)
 {
     std::istringstream from_a(a);
@@ -60,9 +60,9 @@ std::pair<std::string, std::string> difference(const std::string &a, const std::
     std::string line_b;
     while (line_a == line_b && (from_a || from_b)) {
         if (!std::getline(from_a, line_a))
-            line_a = from_b ? "nothing more" : line_a;
+            line_a = from_b ? "end of file" : line_a;
         if (!std::getline(from_b, line_b))
-            line_b = from_a ? "nothing more" : line_b;
+            line_b = from_a ? "end of file" : line_b;
     }
     return {line_a, line_b};
 }
@@ -90,7 +90,7 @@ void Folder::lock()
         throw std::runtime_error("cannot write " + path("lock"));
     if (flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
         (void)close(lock_fd_);
-        throw std::runtime_error("another grrl-experiment is at work in " + root_);
+        throw std::runtime_error("another grrl-experiment is using " + root_);
     }
 }
 
@@ -104,8 +104,8 @@ void Folder::check_settings(const std::string &settings) const
     if (*known == settings)
         return;
     auto [there, here] = difference(*known, settings);
-    throw std::runtime_error(root_ + " holds results of other settings: '" + there + "' there, '" +
-                             here + "' here; name another folder or remove it");
+    throw std::runtime_error(root_ + " holds results with other settings: '" + there +
+                             "' there, '" + here + "' here; name another folder or remove it");
 }
 
 std::string Folder::experiment_path(size_t curve, int experiment) const

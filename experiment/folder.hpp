@@ -1,9 +1,9 @@
 /*
- * folder.hpp: the folder of results, where an interrupted run goes on.
+ * folder.hpp: the results folder, from which an interrupted run resumes.
  *
- * settings.txt says what its results depend on: this program's bytes, objects, policies, seed, ..
- * but not the number of experiments, of jobs, or the transport. experiments/ has a file for each
- * finished experiment.
+ * settings.txt lists everything the results depend on: this program's bytes, objects, policies,
+ * seed, .. but not the number of experiments or jobs, nor the transport. experiments/ has one file
+ * for each finished experiment.
  */
 #ifndef GRRL_EXPERIMENT_FOLDER_HPP
 #define GRRL_EXPERIMENT_FOLDER_HPP
@@ -21,8 +21,8 @@ namespace grrl_experiment
 class Folder
 {
 public:
-    /* Throws std::runtime_error: it cannot be written, another run is at work in it, or it holds
-     * results of other settings. */
+    /* Throws std::runtime_error if the folder cannot be written, another run uses it, or it holds
+     * results with other settings. */
     Folder(const Options &options, const Plan &plan);
     ~Folder();
     Folder(const Folder &) = delete;
@@ -30,7 +30,7 @@ public:
 
     std::string path(const std::string &name) const { return root_ + "/" + name; }
 
-    /* Nothing: the experiment is not finished. Experiments count from 1. */
+    /* Returns nullopt if the experiment is not finished. Experiments count from 1. */
     std::optional<Trials> load(size_t curve, int experiment) const;
     void save(size_t curve, int experiment, const Trials &trials) const;
 

@@ -1,4 +1,4 @@
-/* gnuplot.cpp: gnuplot as a process of its own. */
+/* gnuplot.cpp: runs gnuplot in a separate process. */
 #include "gnuplot.hpp"
 
 #include <cstdio>
@@ -18,8 +18,8 @@ std::string gnuplot_quoted(const std::string &text)
     return result + "'";
 }
 
-/* The script goes through a file: a pipe to a gnuplot that is not there would end us by a signal.
- */
+/* Passes the script in a file: writing to a pipe without a reader would end this process by a
+ * signal. */
 bool run_gnuplot(const std::string &folder, const std::string &script)
 {
     std::FILE *input = std::tmpfile();

@@ -1,4 +1,4 @@
-/* gnuplot.hpp: pictures, drawn by the program gnuplot where it is there. */
+/* gnuplot.hpp: draws pictures with gnuplot if it is installed. */
 #ifndef GRRL_EXPERIMENT_GNUPLOT_HPP
 #define GRRL_EXPERIMENT_GNUPLOT_HPP
 
@@ -7,10 +7,10 @@
 namespace grrl_experiment
 {
 
-/* As a string of gnuplot's, on one line. */
+/* Quotes a text as a gnuplot string, on one line. */
 std::string gnuplot_quoted(const std::string &text);
 
-/* Runs a script in a folder, in silence. False: gnuplot is not there, or fails. */
+/* Runs a script in a folder, without output. False if gnuplot is missing or fails. */
 bool run_gnuplot(const std::string &folder, const std::string &script);
 
 } // namespace grrl_experiment

@@ -1,4 +1,4 @@
-/* jobs.cpp: experiments in processes of their own, some at a time. */
+/* jobs.cpp: runs experiments in separate processes, several at a time. */
 #include "jobs.hpp"
 
 #include <csignal>
@@ -24,7 +24,7 @@ constexpr int poll_ms = 100;
 
 volatile std::sig_atomic_t stop = 0;
 
-/* Sets the handlers for the life of the jobs. */
+/* Installs the signal handlers while jobs run. */
 class Signals
 {
 public:
@@ -51,7 +51,7 @@ public:
     explicit Workers(const JobCallbacks &callbacks) : callbacks_(callbacks)
     {
         if (pipe2(ends_, O_CLOEXEC) != 0)
-            throw std::runtime_error("no pipe for the workers");
+            throw std::runtime_error("cannot create a pipe for the workers");
         (void)fcntl(ends_[0], F_SETFL, O_NONBLOCK);
     }
     ~Workers()
@@ -74,14 +74,14 @@ public:
         pid_t parent = getpid();
         pid_t pid = fork();
         if (pid < 0)
-            throw std::runtime_error("no process for a worker");
+            throw std::runtime_error("cannot create a worker process");
         if (pid == 0)
             live(task, parent);
         pids_.push_back(pid);
     }
 
-    /* Waits a little and takes what has come. */
-    void listen() const
+    /* Waits briefly and processes what has arrived. */
+    void read_reports() const
     {
         pollfd ready{ends_[0], POLLIN, 0};
         (void)poll(&ready, 1, poll_ms);
@@ -92,7 +92,7 @@ public:
                 callbacks_.on_trial(pushes[i]);
     }
 
-    /* False: one of those that ended failed. */
+    /* False if a worker that ended had failed. */
     bool reap()
     {
         bool good = true;
@@ -107,7 +107,7 @@ public:
             if (fine)
                 callbacks_.on_task();
             else if (WIFSIGNALED(status) && stop == 0)
-                (void)std::fprintf(stderr, "grrl-experiment: a worker ended by signal %d\n",
+                (void)std::fprintf(stderr, "grrl-experiment: signal %d ended a worker\n",
                                    WTERMSIG(status));
             good = good && fine;
         }
@@ -123,10 +123,11 @@ private:
         (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
         try {
             if (getppid() == parent) {
-                /* Less than a pipe takes at once: reports of several workers do not mix. */
+                /* A report is shorter than an atomic pipe write, so reports of different workers do
+                 * not mix. */
                 callbacks_.work(task, [this](int pushes) {
                     if (write(ends_[1], &pushes, sizeof pushes) != sizeof pushes)
-                        throw std::runtime_error("nobody takes the results");
+                        throw std::runtime_error("the parent process is gone");
                 });
                 status = 0;
             }
@@ -152,11 +153,11 @@ JobsResult run_jobs(size_t count, int jobs, const JobCallbacks &callbacks)
     while (stop == 0 && good && (next < count || workers.running() > 0)) {
         while (next < count && workers.running() < static_cast<size_t>(jobs))
             workers.start(next++);
-        workers.listen();
+        workers.read_reports();
         good = workers.reap();
         callbacks.on_tick();
     }
-    workers.listen();
+    workers.read_reports();
     if (stop != 0)
         return JobsResult::INTERRUPTED;
     return good ? JobsResult::DONE : JobsResult::FAILED;

@@ -1,8 +1,8 @@
 /*
- * jobs.hpp: tasks in worker processes, several at a time.
+ * jobs.hpp: runs tasks in worker processes, several at a time.
  *
- * A worker is a fork: LCM's threads, a crash, a signal stay its own, and it ends with its parent
- * whatever happens to that. Results are files; what comes back here is progress.
+ * A worker is a fork, which isolates LCM's threads, crashes and signals. It ends with its parent,
+ * however the parent ends. Results are files; only progress comes back here.
  */
 #ifndef GRRL_EXPERIMENT_JOBS_HPP
 #define GRRL_EXPERIMENT_JOBS_HPP
@@ -13,11 +13,11 @@
 namespace grrl_experiment
 {
 
-/* Called in a worker after each trial. */
+/* A worker calls it after each trial. */
 using Report = std::function<void(int pushes)>;
 
 struct JobCallbacks {
-    /* In a worker; throws std::exception. */
+    /* Runs in a worker; may throw std::exception. */
     std::function<void(size_t task, const Report &report)> work;
     std::function<void(int pushes)> on_trial;
     std::function<void()> on_task;
@@ -26,7 +26,7 @@ struct JobCallbacks {
 
 enum class JobsResult { DONE, FAILED, INTERRUPTED };
 
-/* Runs tasks 0 .. count - 1. Stops at the first failure and by SIGINT, SIGTERM or SIGHUP. */
+/* Runs tasks 0 .. count - 1. Stops at the first failure and on SIGINT, SIGTERM or SIGHUP. */
 JobsResult run_jobs(size_t count, int jobs, const JobCallbacks &callbacks);
 
 /* CPU time of all workers that have ended, seconds. */

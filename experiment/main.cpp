@@ -1,4 +1,4 @@
-/* grrl-experiment: what is asked for, carried out by workers, and shown. */
+/* grrl-experiment: plans the experiments, runs them in workers, and presents the results. */
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
@@ -25,7 +25,7 @@ struct Task {
     int experiment; /* from 1 */
 };
 
-/* In a worker: one experiment, from no experience to its file. */
+/* In a worker: runs one experiment, from an empty memory to its file. */
 void experiment(const Options &options, const Curve &curve, const Task &task, const Folder &folder,
                 const Report &report)
 {
@@ -55,7 +55,7 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     folder.save(task.curve, task.experiment, trials);
 }
 
-/* Curves take turns, so that the time left can be told from what is done. */
+/* Curves take turns, so that the remaining time can be estimated from what is done. */
 std::vector<Task> tasks_left(const Options &options, const Plan &plan, const Folder &folder)
 {
     std::vector<Task> tasks;
@@ -80,7 +80,7 @@ JobsResult run_tasks(const Options &options, const Plan &plan, const Folder &fol
         trials += plan.curves[task.curve].trials + plan.curves[task.curve].pretrain_trials;
     size_t all = plan.curves.size() * static_cast<size_t>(options.experiments);
     if (tasks.size() < all)
-        (void)std::fprintf(stderr, "grrl-experiment: %zu of %zu experiments are there already\n",
+        (void)std::fprintf(stderr, "grrl-experiment: %zu of %zu experiments are already done\n",
                            all - tasks.size(), all);
     if (tasks.empty())
         return JobsResult::DONE;
@@ -109,7 +109,7 @@ void publish(const Options &options, const Plan &plan, const Folder &folder)
         for (int e = 1; e <= options.experiments; e++) {
             std::optional<Trials> trials = folder.load(c, e);
             if (!trials)
-                throw std::runtime_error("results of an experiment are gone");
+                throw std::runtime_error("the results of an experiment have disappeared");
             results[c].push_back(*trials);
         }
     write_file(folder.path("trials.csv"), trials_csv(plan, results, options.seed));
@@ -120,8 +120,8 @@ void publish(const Options &options, const Plan &plan, const Folder &folder)
         (void)std::printf("%s\n", text_table(plan, figure, results).c_str());
     }
     if (!drawn)
-        (void)std::fprintf(stderr, "grrl-experiment: no pictures: gnuplot (with pngcairo) is not "
-                                   "there or fails; run it on the .gp files\n");
+        (void)std::fprintf(stderr, "grrl-experiment: no pictures: gnuplot (with pngcairo) is "
+                                   "missing or failed; run it on the .gp files\n");
     write_file(folder.path("report.html"), report_html(options, folder, plan, results));
     (void)std::printf("%s\n", folder.path("report.html").c_str());
 }
@@ -133,7 +133,8 @@ int run(const Options &options, const Plan &plan)
     case JobsResult::FAILED:
         return 1;
     case JobsResult::INTERRUPTED:
-        (void)std::fprintf(stderr, "grrl-experiment: interrupted; the same command goes on\n");
+        (void)std::fprintf(stderr,
+                           "grrl-experiment: interrupted; run the same command to resume\n");
         return 130;
     case JobsResult::DONE:
         break;

@@ -1,4 +1,4 @@
-/* motion.cpp: the push that should move the joints that are not sure yet. */
+/* motion.cpp: chooses the push that should move the joints whose type is uncertain. */
 #include "motion.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ double cosine(Line a, Line b)
     return std::abs(a.x * b.x + a.y * b.y);
 }
 
-/* What of its travel a push transmits to a body, and in which direction. */
+/* The part of its travel that a push transmits to a body, and its direction. */
 struct Thrust {
     Line along;
     double share;
@@ -91,7 +91,7 @@ private:
 
 Action Motion::choose(const grrl_model &model)
 {
-    tried_.look(model);
+    tried_.update(model);
     Action best{model.body[0].number, 0};
     double most = -1.0;
     for (int body = 0; body < model.n_bodies; body++) {

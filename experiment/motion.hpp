@@ -1,17 +1,18 @@
 /*
- * motion.hpp: the push from which the believed model promises the most motion in joints it is not
- * sure of.
+ * motion.hpp: chooses the push for which the estimated model predicts the most motion in joints of
+ * uncertain type.
  *
- * A quasi-static estimate. The finger's contact hardly rubs, so that it transmits the part of its
- * travel along the normal of the side it meets: along the body's axis for a push from behind, else
- * across; that is |cos| or |sin| of the angle between push and axis. While it moves body B that far
- * along n, the rest of the object stays where the table holds it. Then a believed revolute joint of
- * B with its pivot at q moves by |sin(c - q, n)| of it (c: B's centroid), a prismatic one by
- * |cos(its axis, n)|, each weighed with how unsure its type is. Joints not known yet lie somewhere
- * along B, as many as the shortest body fits into it, and move by half of it, as either type is as
- * likely. The sum counts; no push is repeated while the believed structure stays the same.
+ * The prediction is quasi-static. The finger's contact has little friction, so it transmits the
+ * part of its travel along the normal of the side it meets: along the body's axis for a push from
+ * behind, else perpendicular to it. That part is |cos| or |sin| of the angle between push and axis.
+ * While the finger moves body B that far along n, the table holds the rest of the object in place.
+ * Then an estimated revolute joint of B with its pivot at q moves by |sin(c - q, n)| of that
+ * distance (c: B's centroid), and a prismatic one by |cos(its axis, n)|. Each is weighted by the
+ * uncertainty of its type. Joints not yet known lie somewhere along B; their number is how often
+ * the shortest body fits into it, and each moves by half of it, as either type is equally likely.
+ * The prediction is the sum. No push is repeated while the estimated structure stays the same.
  *
- * With believed joints counted in full it moves what it knows, again and again: 19 pushes on
+ * If known joints counted in full, it would move the same joints again and again: 19 pushes on
  * RPRPRPR instead of 13 (60 trials each).
  */
 #ifndef GRRL_EXPERIMENT_MOTION_HPP
@@ -26,7 +27,7 @@ namespace grrl_experiment
 
 std::unique_ptr<Chooser> make_motion();
 
-/* The estimate for one push of a model's body, in travels of the finger. */
+/* The prediction for one push of a model's body, in units of the finger's travel. */
 double expected_motion(const grrl_model &model, int body, uint8_t direction);
 
 } // namespace grrl_experiment

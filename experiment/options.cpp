@@ -15,7 +15,7 @@ namespace
 
 std::string policy_names()
 {
-    std::string names = "one or several, none twice, of ";
+    std::string names = "one or more, without repetition, of ";
     for (const Policy &policy : policies())
         names += policy.name + ", ";
     return names + "or an ablation (--help)";
@@ -47,7 +47,7 @@ const char *take_pretrain(void *context, const char *value)
     uint64_t trials = 0;
     if (colon == std::string::npos || colon == 0 ||
         !grrl_option_integer_of(value + colon + 1, 1, 10000, &trials))
-        return "an object, a colon and a number of trials from 1 to 10000, as RRRRR:50";
+        return "an object, a colon and a number of trials from 1 to 10000, such as RRRRR:50";
     options.pretrain = text.substr(0, colon);
     options.pretrain_trials = static_cast<int>(trials);
     return nullptr;
@@ -82,23 +82,23 @@ std::string help_after_options()
     rows(policies(), 12);
     text << "\nAblations, by --figure ablations (RPRPRPR) or by name:\n";
     rows(ablations(), 25);
-    text << "\nDIR gets trials.csv, summary.csv, report.html and pictures (SVG, PNG; needs "
-            "gnuplot).\n"
-            "A run that was stopped goes on where it was: finished experiments are kept there.\n"
-            "The same command gives the same CSV whatever --jobs and --transport are.\n"
-            "Exit status: 0 done; 1 trouble; 2 wrong command line; 130 interrupted.\n";
+    text << "\nWrites trials.csv, summary.csv, report.html and pictures (SVG, PNG; needs gnuplot)\n"
+            "to DIR.\n"
+            "An interrupted run resumes there: finished experiments are kept.\n"
+            "The same command gives the same CSV for any --jobs and --transport.\n"
+            "Exit status: 0 done; 1 failure; 2 wrong command line; 130 interrupted.\n";
     return text.str();
 }
 
-/* What is wrong about the options together, or nullptr. */
+/* The error in the combination of options, or nullptr. */
 const char *contradiction(const Options &options)
 {
     if (options.object.empty() == options.figure.empty())
-        return "one of --figure and --object is needed, for example --object RPR";
+        return "give either --figure or --object, for example --object RPR";
     if (!options.figure.empty() && !options.pretrain.empty())
-        return "--pretrain goes with --object; a figure has its own";
+        return "--pretrain requires --object; a figure has its own";
     if (options.out.empty())
-        return "--out is needed: a folder for the results";
+        return "--out is required: a folder for the results";
     for (const Policy *policy : options.policies)
         if (policy->needs_truth && options.transport != Transport::MEMQ)
             return "--policy clairvoyant: needs the simulator in the same process, "
@@ -129,23 +129,22 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
         grrl_option_text("object", "OBJECT", "or: chain (RPR), term (D(lb, R(l1, l2))) or file",
                          &o.object),
         grrl_option_call("policy", "NAME[,..]",
-                         "who chooses, see below (learn; with --figure: the figure's)",
+                         "policies, see below (learn; with --figure: those of the figure)",
                          take_policies, &o.policies),
         grrl_option_call("pretrain", "OBJECT:N",
-                         "with --object: compare with N trials of another one before",
+                         "with --object: compare with pretraining, N trials on another one",
                          take_pretrain, &o),
         grrl_option_int("trials", "N", "of an experiment (50)", 1, 10000, &o.trials),
-        grrl_option_int("experiments", "N", "that start without experience (20)", 1, 1000,
+        grrl_option_int("experiments", "N", "each starting without experience (20)", 1, 1000,
                         &o.experiments),
         grrl_option_u64("seed", "N", "experiment i has the seed 1000 N + i (1)", 0, 1000000000,
                         &o.seed),
-        grrl_option_int("jobs", "N", "experiments at the same time (one for each core)", 1, 256,
-                        &o.jobs),
-        grrl_option_text("out", "DIR", "folder for the results; needed", &o.out),
+        grrl_option_int("jobs", "N", "experiments run in parallel (one per core)", 1, 256, &o.jobs),
+        grrl_option_text("out", "DIR", "folder for the results; required", &o.out),
         grrl_option_call("transport", "NAME",
                          "memq: agent and simulator in one process; udpm: in two (memq)",
                          take_transport, &o.transport),
-        grrl_option_int("cap", "N", "pushes after which a trial is given up (100)", 1, 100000,
+        grrl_option_int("cap", "N", "pushes after which a trial ends unsolved (100)", 1, 100000,
                         &o.cap),
         grrl_option_number("noise", "MM", "standard deviation of a tracked point (0.7)", 0.0, 100.0,
                            1.0, &o.noise_mm),
@@ -154,7 +153,7 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
     const grrl_program program = {
         "grrl-experiment",
         "grrl-experiment (--figure NAME | --object OBJECT) --out DIR [OPTION]...",
-        "Lets policies find out the structure of objects in trial after trial and compares\n"
+        "Runs policies that discover the structure of objects over many trials, and compares\n"
         "them: learning curves with intervals, and transfer.\n",
         outro.c_str(),
         0,

@@ -15,11 +15,11 @@ namespace grrl_experiment
 
 struct Options {
     std::string object;
-    std::vector<const Policy *> policies; /* empty: what the figure shows, or learn */
+    std::vector<const Policy *> policies; /* empty: those of the figure, or learn */
     int trials = 50;
     int experiments = 20;
     uint64_t seed = 1;
-    int jobs = 0; /* 0: one for each core */
+    int jobs = 0; /* 0: one per core */
     std::string out;
     std::string pretrain; /* object; empty: none */
     int pretrain_trials = 0;

@@ -14,10 +14,10 @@ namespace grrl_experiment
 namespace
 {
 
-/* Lines and bands are means of so many trials on either side, fewer at the ends. */
+/* Lines and bands average this many trials on either side, fewer at the ends. */
 constexpr int neighbours = 2;
 
-/* A block for each curve: trial, its mean, and mean, low, high of the trials around it. */
+/* A block for each curve: the trial, its mean, and mean, low and high over the trials around it. */
 std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Experiments> &results)
 {
     std::ostringstream text;
@@ -51,7 +51,7 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
     for (size_t i = 0; i < figure.curves.size(); i++) {
         const Curve &curve = plan.curves[figure.curves[i]];
         std::string color = curve.policy->color;
-        /* In a transfer, dashed is without experience. */
+        /* in a transfer, the curve without pretraining is dashed */
         bool dashed = transfer && curve.policy->learns() && curve.pretrain.empty();
         parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
                         "' notitle");
@@ -65,8 +65,8 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
     return command + "\n";
 }
 
-/* A line for each curve: its name, and mean, low, high of the first five trials and the last ten.
- */
+/* A line for each curve: its name, and mean, low and high over the first five and the last ten
+ * trials. */
 std::string rows_of(const Plan &plan, const Figure &figure, const std::vector<Experiments> &results)
 {
     std::ostringstream text;

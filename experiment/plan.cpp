@@ -1,4 +1,4 @@
-/* plan.cpp: which curves a figure or a command line asks for. */
+/* plan.cpp: determines the curves for a figure or a command line. */
 #include "plan.hpp"
 
 #include "options.hpp"
@@ -30,7 +30,7 @@ const std::vector<PaperFigure> &paper_figures()
     return table;
 }
 
-/* Without experience and, where it makes a difference, with it. */
+/* Adds the curve without pretraining and, where it makes a difference, with it. */
 void add_curves(Plan &plan, Figure &figure, const Curve &base)
 {
     Curve without = base;
@@ -86,7 +86,7 @@ void add_figure(Plan &plan, const Options &options, const PaperFigure &paper)
     plan.figures.push_back(figure);
 }
 
-/* Both learners whole, and with one thing taken away. */
+/* Adds both complete learners, and their ablations. */
 void add_ablations(Plan &plan, const Options &options)
 {
     Figure figure;

@@ -14,9 +14,9 @@ namespace grrl_experiment
 
 struct Options;
 
-/* A policy on an object, with or without trials of another object before. */
+/* A policy on an object, with or without pretraining on another object. */
 struct Curve {
-    std::string object; /* as it was given */
+    std::string object; /* as given by the user */
     const Policy *policy = nullptr;
     std::string pretrain; /* object; empty: none */
     int pretrain_trials = 0;
@@ -28,7 +28,7 @@ struct Curve {
 };
 
 struct Figure {
-    enum class Kind { CURVES, ROWS }; /* pushes by trial, or a row of means for each curve */
+    enum class Kind { CURVES, ROWS }; /* pushes by trial, or a row of means per curve */
     Kind kind = Kind::CURVES;
     std::string name; /* figure-3b, or curves */
     std::string title;

@@ -1,4 +1,5 @@
-/* policies.cpp: the table of policies: a row for each of the library, and one for each of ours. */
+/* policies.cpp: the table of policies: one row for each of the library's, and one for each of the
+ * experiment's own. */
 #include "policies.hpp"
 
 #include "clairvoyant.hpp"
@@ -39,21 +40,21 @@ Policy chooser_row(const char *name, const char *text, const char *color,
 
 std::vector<Policy> make_table()
 {
-    /* Of the library's policies in their order; further ones begin again. */
+    /* For the library's policies, in their order; further policies start again from the front. */
     const char *const colors[] = {"#1666a8", "#d1661b", "#c2a21f", "#8c8c8c"};
     std::vector<Policy> table;
     for (const grrl_policy_type *const *type = grrl_policies; *type != nullptr; type++)
         table.push_back({(*type)->name, (*type)->text, *type,
                          colors[table.size() % (sizeof colors / sizeof colors[0])], memory});
     table.push_back(chooser_row(
-        "rule", "no learning: the longest body, along, across, at 45 degrees, no repeats",
+        "rule", "no learning: the longest body; along, across, at 45 degrees; no repeats",
         "#2f8f4e", rule));
     table.push_back(chooser_row("motion",
-                                "no learning: the most motion expected in joints not sure yet",
+                                "no learning: the most predicted motion in joints still uncertain",
                                 "#8a4fb0", motion));
-    table.push_back(chooser_row("clairvoyant",
-                                "knows the truth, tries every push in a copy of the world: a bound",
-                                "#b3243a", clairvoyant));
+    table.push_back(chooser_row(
+        "clairvoyant", "knows the truth and tries every push in a copy of the world: a bound",
+        "#b3243a", clairvoyant));
     table.back().needs_truth = true;
     return table;
 }

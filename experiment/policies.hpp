@@ -1,4 +1,4 @@
-/* policies.hpp: everything that may choose pushes, in two tables. */
+/* policies.hpp: all policies that an experiment can run, in two tables. */
 #ifndef GRRL_EXPERIMENT_POLICIES_HPP
 #define GRRL_EXPERIMENT_POLICIES_HPP
 
@@ -21,24 +21,24 @@ struct Policy {
     const grrl_policy_type *type; /* the operations */
     const char *color;            /* in pictures, #rrggbb */
     uint16_t capacity;            /* cases or experiences */
-    bool needs_truth = false;     /* only where the simulator is in the same process */
-    /* Changes the defaults; config: of the policy's type. Empty: nothing. */
+    bool needs_truth = false;     /* requires the simulator in the same process */
+    /* Changes the defaults; config belongs to the policy's type. Empty: no change. */
     std::function<void(grrl_learner_config &learner, void *config)> configure = {};
-    /* Whom chooser_policy asks; nullptr for a policy of the library. node: nullptr, or the
-     * simulator in this process. */
+    /* Makes the chooser for chooser_policy; nullptr for a policy of the library. node: the
+     * simulator in this process, or nullptr. */
     std::unique_ptr<Chooser> (*make_chooser)(const grrl_sim::Node *node, uint64_t seed) = nullptr;
 
-    /* Otherwise it keeps nothing, and pretraining changes nothing. */
+    /* A policy that does not learn keeps nothing, and pretraining has no effect. */
     bool learns() const { return type->entries != nullptr; }
 };
 
-/* Those of the library, and those that live here. */
+/* The library's policies and the experiment's own. */
 const std::vector<Policy> &policies();
 
-/* The learners with one thing taken away or made smaller, those of paper first. */
+/* The learners with one part removed or made smaller, those of paper first. */
 const std::vector<Policy> &ablations();
 
-/* Of both tables; nullptr: there is none of this name. */
+/* Searches both tables; nullptr if there is no such policy. */
 const Policy *find_policy(const std::string &name);
 
 } // namespace grrl_experiment

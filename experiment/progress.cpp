@@ -1,4 +1,4 @@
-/* progress.cpp: how far a run is, on the standard error. */
+/* progress.cpp: shows a run's progress on standard error. */
 #include "progress.hpp"
 
 #include <algorithm>

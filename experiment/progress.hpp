@@ -1,4 +1,5 @@
-/* progress.hpp: a bar with the time left on a terminal, a line now and then elsewhere. */
+/* progress.hpp: on a terminal a progress bar with the remaining time, elsewhere an
+ * occasional line. */
 #ifndef GRRL_EXPERIMENT_PROGRESS_HPP
 #define GRRL_EXPERIMENT_PROGRESS_HPP
 
@@ -12,13 +13,13 @@ namespace grrl_experiment
 class Progress
 {
 public:
-    /* Trials to be done in all, in so many parts ("experiments"). */
+    /* The total number of trials, and of the parts they form ("experiments"). */
     Progress(int64_t trials, int64_t parts, const char *name_of_parts);
 
     void trial(int pushes);
     void part() { parts_done_++; }
-    void show();   /* if it is time to */
-    void finish(); /* the last state, and the line is over */
+    void show();   /* if it is due */
+    void finish(); /* shows the final state and ends the line */
 
     int64_t pushes() const { return pushes_; }
     double elapsed_s() const;

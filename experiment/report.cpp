@@ -1,4 +1,4 @@
-/* report.cpp: the page with pictures and tables. */
+/* report.cpp: makes the page with pictures and tables. */
 #include "report.hpp"
 
 #include <sstream>
@@ -93,7 +93,8 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
 {
     std::ostringstream html;
     html << head << "<pre>" << escaped(options.command) << "</pre>\n<p>" << options.experiments
-         << " experiments for each curve, each from no experience; means with 95% intervals (t "
+         << " experiments for each curve, each starting without experience; means with 95% "
+            "intervals (t "
             "distribution over experiments). A trial ends when the supervisor sees the true "
             "structure, or after "
          << options.cap << " pushes.</p>\n";
@@ -105,7 +106,8 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
                  << base64(*picture) << "\">\n"
                  << (figure.kind == Figure::Kind::CURVES
                          ? "<p>Lines: means of up to five trials with their intervals; points: "
-                           "means of one trial. In a transfer, dashed is without experience.</p>\n"
+                           "means of one trial. In a transfer, dashed lines are without "
+                           "pretraining.</p>\n"
                          : "<p>Means with their intervals over the first five trials (hollow) and "
                            "the last ten (filled).</p>\n");
         html << table_of(plan, figure, results);

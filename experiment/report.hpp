@@ -1,4 +1,4 @@
-/* report.hpp: everything in one HTML file that needs no other. */
+/* report.hpp: writes all results to one self-contained HTML file. */
 #ifndef GRRL_EXPERIMENT_REPORT_HPP
 #define GRRL_EXPERIMENT_REPORT_HPP
 
@@ -7,7 +7,7 @@
 namespace grrl_experiment
 {
 
-/* Pictures are taken from the folder, if they are there. */
+/* Includes the pictures in the folder, if there are any. */
 std::string report_html(const Options &options, const Folder &folder, const Plan &plan,
                         const std::vector<Experiments> &results);
 

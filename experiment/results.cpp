@@ -1,4 +1,4 @@
-/* results.cpp: trials and means as CSV and as text. */
+/* results.cpp: writes trials and means as CSV and as text. */
 #include "results.hpp"
 
 #include <algorithm>

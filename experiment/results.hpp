@@ -11,7 +11,7 @@
 namespace grrl_experiment
 {
 
-/* Of experiment 1, 2, ..: of the world and of the policy; in pretraining another one. */
+/* The seed of experiment 1, 2, .., for the world and the policy; pretraining uses another one. */
 uint64_t experiment_seed(uint64_t seed, int experiment);
 uint64_t pretrain_seed(uint64_t experiment_seed);
 
@@ -19,7 +19,7 @@ uint64_t pretrain_seed(uint64_t experiment_seed);
 std::string trials_csv(const Plan &plan, const std::vector<Experiments> &results, uint64_t seed);
 std::string summary_csv(const Plan &plan, const std::vector<Experiments> &results);
 
-/* "paper", "paper after RRRRR:50", with the object before it if wanted. */
+/* "paper", "paper after RRRRR:50"; optionally preceded by the object. */
 std::string curve_label(const Curve &curve, bool with_object);
 
 /* "7.2 +- 0.4" */

@@ -1,4 +1,4 @@
-/* rule.cpp: the longest body first, no push twice. */
+/* rule.cpp: pushes the longest body first and repeats no push. */
 #include "rule.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ private:
 
 Action Rule::choose(const grrl_model &model)
 {
-    tried_.look(model);
+    tried_.update(model);
     std::vector<int> bodies(model.n_bodies);
     std::iota(bodies.begin(), bodies.end(), 0);
     std::stable_sort(bodies.begin(), bodies.end(), [&model](int a, int b) {
@@ -41,7 +41,7 @@ Action Rule::choose(const grrl_model &model)
             }
         }
     }
-    return {model.body[bodies[0]].number, order[0]}; /* not reached: one was left */
+    return {model.body[bodies[0]].number, order[0]}; /* unreachable: one push was left */
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 /*
  * rule.hpp: a fixed rule that learns nothing.
  *
- * Push the longest believed body: along its axis, then across, then at 45 degrees; never the same
- * push twice while the believed structure stays the same; then the next longest.
+ * It pushes the longest estimated body along its axis, then perpendicular to it, then at 45
+ * degrees; then the next longest. It repeats no push while the estimated structure stays the same.
  */
 #ifndef GRRL_EXPERIMENT_RULE_HPP
 #define GRRL_EXPERIMENT_RULE_HPP

@@ -1,7 +1,7 @@
 /*
  * sides.hpp: the two ends of the wire, in one process or in two.
  *
- * Each speaks LCM on an lcm_t of the caller. Call lcm_handle and tick in turns until finished.
+ * Each uses LCM on an lcm_t of the caller. Call lcm_handle and tick alternately until finished.
  */
 #ifndef GRRL_EXPERIMENT_SIDES_HPP
 #define GRRL_EXPERIMENT_SIDES_HPP
@@ -27,25 +27,25 @@ using Clock = std::function<int64_t()>;
 struct TrialRow {
     int trial = 0; /* from 1 */
     int pushes = 0;
-    bool discovered = false; /* or capped */
-    int wrong_joints = 0;    /* ever believed in the trial though the object has none such */
+    bool discovered = false; /* else capped */
+    int wrong_joints = 0;    /* wrong joints ever estimated in the trial */
 };
 
-/* An object met for a number of trials. */
+/* A number of trials with one object. */
 struct Phase {
     grrl_sim::ObjectSpec object;
     const Policy *policy = nullptr;
     int trials = 1;
     int cap = 100;
     uint64_t seed = 1;
-    double noise_m = 0.0007; /* of a tracked point; the agent knows it */
+    double noise_m = 0.0007; /* of a tracked point; known to the agent */
 };
 
-/* Agent core and its policy. */
+/* The agent's core and its policy. */
 class AgentSide
 {
 public:
-    /* node: as for Policy. Throws std::runtime_error: LCM refuses, or experience is none. */
+    /* node: as for Policy. Throws std::runtime_error if LCM fails or the experience is invalid. */
     AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim::Node *node,
               const Bytes &experience);
     ~AgentSide();
@@ -64,11 +64,11 @@ private:
     Clock clock_;
     std::unique_ptr<Chooser> chooser_;
     bool learns_;
-    std::vector<std::max_align_t> memory_; /* of the policy */
+    std::vector<std::max_align_t> memory_; /* for the policy */
     std::unique_ptr<grrl_agent> agent_;
 };
 
-/* Simulator node, and the count of wrong joints in the models it receives. */
+/* The simulator node; also counts wrong joints in the models it receives. */
 class WorldSide
 {
 public:
@@ -76,7 +76,7 @@ public:
 
     WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_trial);
 
-    /* Throws std::runtime_error when the run cannot go on. */
+    /* Throws std::runtime_error if the run cannot continue. */
     void tick();
     bool finished() const { return node_->finished(); }
     int64_t agent_silent_us() const { return node_->agent_silent_us(); }
@@ -89,7 +89,7 @@ private:
     OnTrial on_trial_;
     int trials_ = 0;
     int32_t trial_id_ = 0;
-    int32_t cmd_seq_ = -1;                      /* of the newest model measured */
+    int32_t cmd_seq_ = -1;                      /* of the latest model measured */
     std::set<std::tuple<int, int, int>> wrong_; /* numbers of the links, type */
     std::unique_ptr<grrl_wire_model> model_;
     std::unique_ptr<grrl_sim::Node> node_;

@@ -15,7 +15,7 @@ double t_quantile(int degrees)
                                    2.060,  2.056, 2.052, 2.048, 2.045, 2.042};
     if (degrees >= 1 && degrees <= 30)
         return table[degrees - 1];
-    /* Its expansion in 1 / degrees, good to three digits here. */
+    /* The expansion of the quantile in 1 / degrees, accurate to three digits here. */
     return 1.95996 + 2.37226 / degrees + 2.8225 / (static_cast<double>(degrees) * degrees);
 }
 

@@ -1,8 +1,8 @@
 /*
- * statistics.hpp: means over experiments with their intervals.
+ * statistics.hpp: means over experiments and their intervals.
  *
- * Each experiment gives one number, its own mean over the trials in question; its trials are not
- * independent of one another. The interval is t(0.975, n - 1) s / sqrt(n) to either side.
+ * Each experiment contributes one number, its mean over the trials in question, because the trials
+ * of one experiment are not independent. The interval is +- t(0.975, n - 1) s / sqrt(n).
  */
 #ifndef GRRL_EXPERIMENT_STATISTICS_HPP
 #define GRRL_EXPERIMENT_STATISTICS_HPP
@@ -22,7 +22,7 @@ using Experiments = std::vector<Trials>;
 struct Mean {
     int n = 0;
     double mean = 0.0;
-    double half = -1.0; /* of the interval's width; negative: one experiment has none */
+    double half = -1.0; /* half-width of the interval; negative: undefined for one experiment */
     double low() const { return half < 0.0 ? mean : mean - half; }
     double high() const { return half < 0.0 ? mean : mean + half; }
 };

@@ -1,5 +1,5 @@
 /*
- * transport.hpp: a phase carried out over LCM: agent and simulator in this process (memq), or the
+ * transport.hpp: runs a phase over LCM, with agent and simulator in this process (memq) or the
  * simulator in a child process (udpm). Both give the same results, bit for bit.
  */
 #ifndef GRRL_EXPERIMENT_TRANSPORT_HPP
@@ -12,7 +12,7 @@ namespace grrl_experiment
 
 enum class Transport { MEMQ, UDPM };
 
-/* Both return the experience afterwards and throw std::runtime_error. */
+/* Both return what the policy learned, and throw std::runtime_error. */
 Bytes run_over_memq(const Phase &phase, const Bytes &experience,
                     const WorldSide::OnTrial &on_trial);
 Bytes run_over_udpm(const Phase &phase, const Bytes &experience,

@@ -22,7 +22,8 @@ struct Lcm {
 
 Bytes run_over_memq(const Phase &phase, const Bytes &experience, const WorldSide::OnTrial &on_trial)
 {
-    /* Time passes only when there is nothing to do: no repetition, however slow the machine. */
+    /* Time advances only when there is nothing to do, so no message is resent, however slow the
+     * machine. */
     int64_t now_us = 1000000;
     Clock clock = [&now_us] { return now_us; };
     Lcm wire;
@@ -33,7 +34,7 @@ Bytes run_over_memq(const Phase &phase, const Bytes &experience, const WorldSide
     while (!world.finished()) {
         int handled = lcm_handle_timeout(wire.lcm, 0);
         if (handled < 0)
-            throw std::runtime_error("LCM fails to receive");
+            throw std::runtime_error("LCM failed to receive");
         if (handled == 0) {
             now_us += 5000;
             world.tick();

@@ -18,8 +18,8 @@ namespace
 {
 
 constexpr int poll_ms = 5;
-constexpr int64_t patience_us = 20000000; /* without a word of the other process */
-constexpr int64_t farewell_us = 5000000;  /* for the simulator to end after its last word */
+constexpr int64_t silence_timeout_us = 20000000; /* without a message from the other process */
+constexpr int64_t exit_timeout_us = 5000000; /* for the simulator to end after its last message */
 
 int64_t now_us()
 {
@@ -32,7 +32,7 @@ lcm_t *open_lcm(const std::string &url)
     lcm_t *lcm = lcm_create(url.c_str());
     if (lcm == nullptr || lcm_get_fileno(lcm) < 0)
         throw std::runtime_error(
-            "LCM does not start; if this machine has no network: ip link set lo up; "
+            "cannot start LCM; if this machine has no network: ip link set lo up; "
             "ip route add 224.0.0.0/4 dev lo; or use --transport memq");
     return lcm;
 }
@@ -42,18 +42,18 @@ void simulate(const std::string &url, const Phase &phase, int rows_fd)
     lcm_t *lcm = open_lcm(url);
     WorldSide world(lcm, phase, now_us, [rows_fd](const TrialRow &row) {
         if (write(rows_fd, &row, sizeof row) != sizeof row)
-            throw std::runtime_error("the result of a trial is lost");
+            throw std::runtime_error("the result of a trial was lost");
     });
     while (!world.finished()) {
         if (lcm_handle_timeout(lcm, poll_ms) < 0)
-            throw std::runtime_error("LCM fails to receive");
+            throw std::runtime_error("LCM failed to receive");
         world.tick();
-        if (world.agent_silent_us() > patience_us)
-            throw std::runtime_error("the simulator hears no agent");
+        if (world.agent_silent_us() > silence_timeout_us)
+            throw std::runtime_error("the simulator does not hear the agent");
     }
 }
 
-/* The simulator as a child, which ends with this process whatever happens to it. */
+/* The simulator as a child process, which ends with this process, however this one ends. */
 class Child
 {
 public:
@@ -61,7 +61,7 @@ public:
     {
         int ends[2];
         if (pipe(ends) != 0)
-            throw std::runtime_error("no pipe for the simulator");
+            throw std::runtime_error("cannot create a pipe for the simulator");
         (void)std::fflush(nullptr);
         pid_t parent = getpid();
         pid_ = fork();
@@ -71,7 +71,7 @@ public:
         rows_fd_ = ends[0];
         (void)fcntl(rows_fd_, F_SETFL, O_NONBLOCK);
         if (pid_ < 0)
-            throw std::runtime_error("no process for the simulator");
+            throw std::runtime_error("cannot create the simulator process");
     }
     ~Child()
     {
@@ -84,7 +84,7 @@ public:
     Child(const Child &) = delete;
     Child &operator=(const Child &) = delete;
 
-    /* Whether it has ended; throws if it failed. */
+    /* Whether the child has ended; throws if it failed. */
     bool ended()
     {
         int status = 0;
@@ -96,7 +96,7 @@ public:
         return pid_ == 0;
     }
 
-    /* What has come so far. */
+    /* Reads the rows that have arrived. */
     void read_rows(const WorldSide::OnTrial &on_trial) const
     {
         TrialRow row;
@@ -125,7 +125,7 @@ private:
     int rows_fd_ = -1;
 };
 
-/* Processes that run at the same time have different ids and so different ports. */
+/* Concurrent processes have different ids and therefore different ports. */
 std::string own_url()
 {
     return "udpm://239.255.76.67:" + std::to_string(10000 + getpid() % 22000) + "?ttl=0";
@@ -144,12 +144,12 @@ Bytes run_over_udpm(const Phase &phase, const Bytes &experience, const WorldSide
         int64_t finished_us = 0;
         while (!simulator.ended()) {
             if (lcm_handle_timeout(lcm, poll_ms) < 0)
-                throw std::runtime_error("LCM fails to receive");
+                throw std::runtime_error("LCM failed to receive");
             agent.tick();
             simulator.read_rows(on_trial);
             if (agent.finished() && finished_us == 0)
                 finished_us = now_us();
-            if (finished_us > 0 && now_us() - finished_us > farewell_us)
+            if (finished_us > 0 && now_us() - finished_us > exit_timeout_us)
                 throw std::runtime_error("the simulator does not end");
         }
         bytes = agent.experience();

@@ -1,4 +1,4 @@
-/* truth.cpp: the link of each feature decides which links stand for which. */
+/* truth.cpp: assigns estimated links to true ones by the features they hold. */
 #include "truth.hpp"
 
 #include <algorithm>

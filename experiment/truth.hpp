@@ -1,9 +1,10 @@
 /*
- * truth.hpp: an estimate of a structure, by whatever method, measured by the true one. On the
+ * truth.hpp: compares an estimated structure, from any method, with the true one. It runs on the
  * simulator's side; an agent never sees any of it.
  *
- * A link of the estimate stands for the true link most of whose features it has. While true links
- * have not moved against one another, several have the same one, which is right.
+ * An estimated link represents the true link to which most of its features belong. While true links
+ * have not moved relative to one another, one estimated link may hold several of them, which is
+ * correct.
  */
 #ifndef GRRL_EXPERIMENT_TRUTH_HPP
 #define GRRL_EXPERIMENT_TRUTH_HPP
@@ -26,25 +27,27 @@ struct EstimatedJoint {
     double probability;
 };
 
-/* The link of a feature on the background, or on nothing known. */
+/* A feature on the background or on no known link. */
 enum { no_link = -1 };
 
 struct Estimate {
     int links = 0;
     std::vector<EstimatedJoint> joints;
-    std::vector<std::pair<int32_t, int>> features; /* id, and link or no_link; those seen */
+    std::vector<std::pair<int32_t, int>>
+        features; /* id, and link or no_link; only features that were seen */
 };
 
 Estimate estimate_of(const grrl_model_t &model);
 Estimate estimate_of(const grrl_model &model);
 
-/* Of each true link the estimated one that holds most of its features; no_link: none holds any. */
+/* For each true link, the estimated link that holds most of its features; no_link if none holds
+ * any. */
 std::vector<int> estimated_links(const grrl_sim::World &world, const Estimate &estimate);
 
-/* Of each true joint: whether the estimate has it, with its type. */
+/* For each true joint, whether the estimate has it, with its type. */
 std::vector<bool> known_joints(const grrl_sim::World &world, const Estimate &estimate);
 
-/* Of each estimated joint: whether the object has none of this type between what the two hold. */
+/* For each estimated joint, whether the object has no joint of this type between the true links. */
 std::vector<bool> wrong_joints(const grrl_sim::World &world, const Estimate &estimate);
 
 } // namespace grrl_experiment

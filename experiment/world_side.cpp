@@ -1,4 +1,4 @@
-/* world_side.cpp: the simulator of an experiment, and the wrong joints it sees in models. */
+/* world_side.cpp: the simulator of an experiment, which also counts wrong joints in models. */
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -37,8 +37,8 @@ WorldSide::WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_tri
 void WorldSide::tick()
 {
     node_->tick();
-    if (node_->agent_is_blind())
-        throw std::runtime_error("the agent finds nothing to push: less noise, please");
+    if (node_->agent_has_nothing_to_push())
+        throw std::runtime_error("the agent finds nothing to push; try a lower --noise");
 }
 
 void WorldSide::on_message(const char *channel, const void *data, uint32_t size)

@@ -1,4 +1,4 @@
-/* channels.h: the names of all LCM channels. docs/messages.md tells who speaks on which. */
+/* channels.h: the names of all LCM channels. docs/messages.md says who sends on which. */
 #ifndef GRRL_CHANNELS_H
 #define GRRL_CHANNELS_H
 

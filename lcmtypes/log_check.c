@@ -1,4 +1,4 @@
-/* Walks over the events of a log and checks their lengths. */
+/* Walks over a log's events and checks their lengths. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "log_check.h"
@@ -12,7 +12,7 @@
 
 #define MAGIC UINT32_C(0xeda1da01)
 
-/* Behind the magic: number and time of the event, 8 bytes each, then the two lengths. */
+/* After the magic: number and time of the event, 8 bytes each, then the two lengths. */
 enum { HEADER_BYTES = 24, CHANNEL_LENGTH_AT = 16, DATA_LENGTH_AT = 20, MAX_CHANNEL = 1000 };
 
 static bool fail(struct grrl_log_why *why, const char *path, const char *what)
@@ -26,7 +26,7 @@ static uint32_t number_at(const uint8_t *bytes)
     return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Skips to behind the next magic, as the reader does; false: there is none. */
+/* Skips past the next magic, as the reader does; false if there is none. */
 static bool find_event(FILE *file)
 {
     uint32_t last = 0;
@@ -49,17 +49,18 @@ static bool check_events(FILE *file, const char *path, struct grrl_log_why *why)
         uint32_t channel = number_at(header + CHANNEL_LENGTH_AT);
         uint32_t data = number_at(header + DATA_LENGTH_AT);
         if (channel == 0 || channel >= MAX_CHANNEL || data > INT32_MAX) {
-            /* The reader refuses it; should it look for another behind the magic, so is done here.
-             */
+            /* The reader rejects it and resumes its search after the magic, so this
+             * does the same. */
             if (fseeko(file, at, SEEK_SET) != 0)
                 return fail(why, path, strerror(errno));
             continue;
         }
         if (data > GRRL_LOG_MAX_EVENT) {
             char what[120];
-            (void)snprintf(what, sizeof what,
-                           "byte %lld: a message of %lu bytes, the most is %d: the log is damaged",
-                           (long long)at, (unsigned long)data, GRRL_LOG_MAX_EVENT);
+            (void)snprintf(
+                what, sizeof what,
+                "byte %lld: a message of %lu bytes exceeds the limit of %d: the log is damaged",
+                (long long)at, (unsigned long)data, GRRL_LOG_MAX_EVENT);
             return fail(why, path, what);
         }
         if (fseeko(file, (off_t)channel + (off_t)data, SEEK_CUR) != 0)

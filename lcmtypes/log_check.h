@@ -1,9 +1,9 @@
 /*
- * log_check.h: before an LCM log is given to LCM's own reader.
+ * log_check.h: checks an LCM log before LCM's own reader opens it.
  *
- * That reader believes the lengths in the file: with LCM 1.3.1, one that no memory can hold ends
- * the process. Here every event is looked at that the reader could come upon; nothing is allocated
- * and no message is read.
+ * That reader trusts the lengths in the file: with LCM 1.3.1, a length that exceeds memory ends the
+ * process. This check visits every event that the reader could find. It allocates nothing and
+ * decodes no message.
  */
 #ifndef GRRL_LOG_CHECK_H
 #define GRRL_LOG_CHECK_H
@@ -15,20 +15,21 @@
 
 GRRL_API_BEGIN
 
-enum { GRRL_LOG_MAX_EVENT = 64 * 1024 * 1024 /* bytes of a message */ };
+enum { GRRL_LOG_MAX_EVENT = 64 * 1024 * 1024 /* bytes per message */ };
 
 struct grrl_log_why {
     char text[512];
 };
 
 /*
- * Whether no event of the log is longer than GRRL_LOG_MAX_EVENT; else a reason. A log that is cut
- * off is fine, and so is a file that is no log at all: the reader finds no event in it. Cost: a
- * read of each event's header; a byte at a time where there is none.
+ * Whether every event of the log is at most GRRL_LOG_MAX_EVENT long; else gives a reason. A
+ * truncated log passes, and so does a file that is not a log: the reader finds no event in it.
+ * Cost: one read per event header; byte by byte where there is none.
  */
 bool grrl_log_check(const char *path, struct grrl_log_why *why);
 
-/* The path in a URL file://PATH?.. of LCM, cut to the capacity; false: it is another provider's. */
+/* Extracts the path from an LCM URL file://PATH?.., truncated to the capacity; false if the URL
+ * belongs to another provider. */
 bool grrl_log_path(const char *url, size_t capacity, char *path);
 
 GRRL_API_END

@@ -1,4 +1,4 @@
-/* Decodes and encodes each message, and checks every field on the way. */
+/* Decodes and encodes each message, and checks every field. */
 #include "wire.h"
 
 #include <float.h>
@@ -16,7 +16,7 @@ _Static_assert(sizeof(float) == 4, "IEEE single precision");
 enum kind { I8, I16, I32, I64, F32 };
 static const uint8_t kind_bytes[] = {1, 2, 4, 8, 4};
 
-/* One field of a message: where it lies in the struct and what may stand in it. The rows of a table
+/* One field of a message: its place in the struct and its allowed values. The rows of a table
  * follow the order of the .lcm file, which is the order of the bytes. */
 struct field {
     const char *name;
@@ -24,7 +24,7 @@ struct field {
     uint16_t offset;
     uint16_t count_offset; /* of the int32_t that counts a variable array, or NO_COUNT */
     uint8_t kind;
-    uint8_t n; /* values in the struct itself, 0 for a variable array: a pointer */
+    uint8_t n; /* values stored in the struct; 0 for a variable array, which is a pointer */
 };
 
 enum { NO_COUNT = 0xffff };
@@ -36,10 +36,10 @@ struct type {
     size_t n_fields;
 };
 
-/* The fingerprint stands before the fields. */
+/* The fingerprint precedes the fields. */
 enum { HEAD_BYTES = 8 };
 
-/* The rest of the arguments is the range: low, high. */
+/* The remaining arguments are the range: low, high. */
 #define ONE(type, kind, field, ...) ROW(type, kind, field, NO_COUNT, 1, __VA_ARGS__)
 #define TWO(type, kind, field, ...) ROW(type, kind, field, NO_COUNT, 2, __VA_ARGS__)
 #define MANY(type, kind, field, count, ...)                                                        \
@@ -191,8 +191,8 @@ static const struct field agent_status_fields[] = {
 };
 #undef A
 
-/* Where value i of a field lies in the struct. A variable array is a pointer there; memcpy reads it
- * whatever the pointer's type. */
+/* The address of value i of a field. A variable array is a pointer in the struct; memcpy reads it
+ * regardless of the pointer's type. */
 static unsigned char *place(const struct field *field, void *message, uint32_t i)
 {
     unsigned char *base = (unsigned char *)message + field->offset;
@@ -279,7 +279,7 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
     for (size_t f = 0; f < type->n_fields; f++) {
         const struct field *field = &type->fields[f];
         unsigned width = kind_bytes[field->kind];
-        /* Counts were checked as fields of their own: n * width cannot overflow. */
+        /* Counts were checked as fields of their own, so n * width cannot overflow. */
         uint32_t n = count(field, message);
         if (n * width > size - at) {
             (void)snprintf(why->text, sizeof why->text, "%s: ends within %s, after %u bytes",
@@ -300,7 +300,7 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
     return false;
 }
 
-/* The same checks on the sender's side. */
+/* The same checks, on the sender's side. */
 static bool check(const struct type *type, const void *message, struct grrl_wire_why *why)
 {
     for (size_t f = 0; f < type->n_fields; f++) {
@@ -328,7 +328,7 @@ static int encoded(const struct type *type, int size, struct grrl_wire_why *why)
     return size < 0 ? -1 : size;
 }
 
-/* What the table cannot say: indices of links below the number of links. */
+/* Checks what the table cannot express: indices of links must be below the number of links. */
 static bool check_indices(const grrl_model_t *model, struct grrl_wire_why *why)
 {
     for (int32_t j = 0; j < model->n_joints; j++) {

@@ -1,10 +1,11 @@
 /*
- * wire.h: between the bytes of a message and its struct, with every check that stands between them.
+ * wire.h: converts between the bytes of a message and its struct, with all range checks.
  *
- * The decoders that lcm-gen writes trust the wire: a count sizes an allocation. Here a message is
- * taken only if its fingerprint is right, every count lies within its limit, every number is finite
- * and within its documented range, every index points into its array, and the size is exact to the
- * byte. Nothing is allocated. This is the only file of the project that checks ranges of messages.
+ * The decoders that lcm-gen writes trust the wire: a count sizes an allocation. This module accepts
+ * a message only if its fingerprint is right, every count is within its limit, every number is
+ * finite and within its documented range, every index points into its array, and the size is exact
+ * to the byte. Nothing is allocated. This is the only file of the project that checks ranges of
+ * messages.
  *
  * grrl_wire_decode_<type>  returns true, or false with a reason; *out is then unspecified
  * grrl_wire_encode_<type>  the bytes written, or -1 with a reason: what would be refused on the
@@ -30,12 +31,12 @@
 
 GRRL_API_BEGIN
 
-/* What the messages can carry; at least what the library can (asserted in wire.c). */
+/* The capacities of the messages, at least those of the library (asserted in wire.c). */
 enum {
     GRRL_WIRE_MAX_POINTS = 256,
     GRRL_WIRE_MAX_LINKS = 32,
     GRRL_WIRE_MAX_JOINTS = 64,
-    GRRL_WIRE_MAX_BYTES = 4096 /* the largest message, encoded, fits */
+    GRRL_WIRE_MAX_BYTES = 4096 /* fits the largest encoded message */
 };
 
 /* Why a message was refused: type, field and value, in English. */
@@ -43,8 +44,8 @@ struct grrl_wire_why {
     char text[128];
 };
 
-/* A message with the storage its arrays point to. Copying one leaves the copy's pointers on the
- * original: use grrl_wire_bind_<type> on the copy. */
+/* A message with storage for its arrays. After a copy, the copy's pointers still point to the
+ * original: call grrl_wire_bind_<type> on the copy. */
 struct grrl_wire_points {
     grrl_points_t message;
     int32_t id[GRRL_WIRE_MAX_POINTS];
@@ -74,7 +75,7 @@ struct grrl_wire_model {
     int8_t feature_link[GRRL_WIRE_MAX_POINTS];
 };
 
-/* Points the message's arrays at its own storage; before filling one by hand. */
+/* Points the message's arrays at its own storage. Call it before filling a message by hand. */
 void grrl_wire_bind_points(struct grrl_wire_points *points);
 void grrl_wire_bind_model(struct grrl_wire_model *model);
 
@@ -93,7 +94,7 @@ bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t 
 bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
                                    struct grrl_wire_why *why);
 
-/* capacity: bytes at data; GRRL_WIRE_MAX_BYTES is enough for every message. */
+/* capacity: size of data in bytes; GRRL_WIRE_MAX_BYTES is enough for every message. */
 int grrl_wire_encode_points(const grrl_points_t *message, int capacity, uint8_t *data,
                             struct grrl_wire_why *why);
 int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *data,

@@ -1,4 +1,4 @@
-/* controller.c: packets in, packets out, and a hash of each answer. */
+/* controller.c: executes packets, answers them, and hashes each answer. */
 #include "controller.h"
 
 #include <string.h>
@@ -52,12 +52,12 @@ static void add_answer(const struct onboard_controller *controller, uint64_t *ha
     *hash = hash_on(*hash, controller->answer.bytes, controller->answer.n);
 }
 
-/* The policy of this name among those of the image, or NULL. */
+/* The image's policy with this name, or NULL. */
 static const struct grrl_policy_type *find_policy(const char *name)
 {
     static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
     for (size_t i = 0; i < sizeof offered / sizeof offered[0]; i++)
-        if (strcmp(offered[i]->name, name) == 0)
+        if (strncmp(offered[i]->name, name, GRRL_POLICY_NAME_BYTES) == 0)
             return offered[i];
     return NULL;
 }
@@ -109,7 +109,7 @@ static enum grrl_status take_frame(struct onboard_controller *controller,
     return GRRL_OK;
 }
 
-/* The believed structure as a text; it counts as a part of the model. */
+/* The estimated structure as text; it counts as a part of the model. */
 static enum grrl_status print_term(struct onboard_controller *controller, size_t *length)
 {
     grrl_term term;
@@ -131,7 +131,7 @@ static void perceive(struct onboard_controller *controller)
         onboard_put_model(&controller->answer,
                           grrl_perception_model(&controller->learner.perception));
         if (print_term(controller, &length) != GRRL_OK)
-            length = 0; /* no body yet, or a structure too large for the text */
+            length = 0; /* no body yet, or the structure is too large for the text */
     }
     add_answer(controller, &controller->hashes.models);
     controller->hashes.models = hash_on(controller->hashes.models, controller->text, length);

@@ -1,8 +1,8 @@
 /*
  * controller.h: the learner in a fixed amount of memory, driven by packets.
  *
- * Everything it believes, decides and learns goes into hashes, so that runs on different machines
- * can be compared, and what each step costs is counted.
+ * It hashes everything it estimates, decides and learns, so that runs on different machines can be
+ * compared, and it counts the cost of each step.
  *
  * Order of calls: onboard_controller_init, then onboard_controller_take for each packet.
  */
@@ -18,8 +18,8 @@
 
 GRRL_API_BEGIN
 
-/* The policies that the controller offers, pointers with a comma behind each; what is not named
- * here is not linked. The build sets both (onboard/CMakeLists.txt). */
+/* The policies that the controller offers: pointers, each followed by a comma. Others are not
+ * linked. The build sets both macros (onboard/CMakeLists.txt). */
 #ifndef ONBOARD_POLICIES
 #define ONBOARD_POLICIES &grrl_policy_learn, &grrl_policy_paper,
 #endif
@@ -29,18 +29,18 @@ GRRL_API_BEGIN
 #define ONBOARD_POLICY_BYTES GRRL_PAPER_POLICY_BYTES(ONBOARD_ENTRIES)
 #endif
 
-/* Nodes and characters for the believed structure as a term. */
+/* Nodes and characters for the estimated structure as a term. */
 enum { ONBOARD_TERM_NODES = 128, ONBOARD_TERM_BYTES = 1024 };
 
 enum onboard_step {
-    ONBOARD_STEP_FRAME,    /* a frame taken in */
+    ONBOARD_STEP_FRAME,    /* process a frame */
     ONBOARD_STEP_PERCEIVE, /* bodies and joints from all keyframes */
     ONBOARD_STEP_CHOOSE,   /* recall, policy and push */
     ONBOARD_STEP_LEARN,    /* recall and update */
     ONBOARD_STEPS
 };
 
-/* In units of the counter given to onboard_controller_init. */
+/* In ticks of the counter given to onboard_controller_init. */
 struct onboard_cost {
     uint64_t sum;
     uint32_t n;
@@ -48,7 +48,7 @@ struct onboard_cost {
 };
 
 struct onboard_hashes {
-    uint64_t models; /* with the structure as a term */
+    uint64_t models; /* including the structure as a term */
     uint64_t decisions;
     uint64_t updates;
 };
@@ -59,28 +59,28 @@ struct onboard_controller {
         max_align_t aligned;
         uint8_t bytes[ONBOARD_POLICY_BYTES];
     } policy;                     /* memory for any of ONBOARD_POLICIES */
-    struct onboard_points points; /* of the frame being taken in */
+    struct onboard_points points; /* of the current frame */
     struct grrl_term_store terms;
     struct grrl_term_node nodes[ONBOARD_TERM_NODES];
     char text[ONBOARD_TERM_BYTES];
     struct onboard_packet answer;
     struct onboard_hashes hashes;
-    uint64_t store_hash;  /* of what the policy learned as a file, after CLOSE */
-    uint32_t store_bytes; /* of it */
+    uint64_t store_hash;  /* after CLOSE: of the file of what the policy learned */
+    uint32_t store_bytes; /* length of that file */
     struct onboard_cost cost[ONBOARD_STEPS];
-    uint32_t (*count)(void); /* NULL: nothing is counted */
+    uint32_t (*count)(void); /* NULL: costs are not counted */
     bool open;
 };
 
-/* count: a free-running counter of 32 bits, or NULL. */
+/* count: a free-running 32-bit counter, or NULL. */
 void onboard_controller_init(struct onboard_controller *controller, uint32_t (*count)(void));
 
 /*
- * Does what the packet says. The answer is in controller->answer: REFUSED after a failure.
- * GRRL_ERR_FORMAT: no such packet, or not of its length; GRRL_ERR_VERSION: a run of other
- * capacities; GRRL_ERR_NONE: a policy that this controller does not have; GRRL_ERR_ORDER: not open;
- * GRRL_ERR_CORRUPT: the hashes so far are not the expected ones. What the learner itself says is no
- * failure but the status in the answer.
+ * Executes the packet. The answer is in controller->answer; it is REFUSED after a failure.
+ * GRRL_ERR_FORMAT: unknown packet, or wrong length; GRRL_ERR_VERSION: a run with other capacities;
+ * GRRL_ERR_NONE: a policy that this controller does not have; GRRL_ERR_ORDER: not open;
+ * GRRL_ERR_CORRUPT: the hashes so far differ from the expected ones. A failure of the learner
+ * itself is not one of these; its status is in the answer.
  */
 GRRL_MUST_USE enum grrl_status onboard_controller_take(struct onboard_controller *controller,
                                                        struct onboard_packet *packet);

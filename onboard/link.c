@@ -1,11 +1,11 @@
 /* Frames: byte stuffing, CRC and sequence numbers. */
 #include "link.h"
 
-/* A CRC over bytes and their own CRC comes to this. */
+/* The CRC over bytes followed by their own CRC has this value. */
 #define CRC_RESIDUE UINT32_C(0xdebb20e3)
 #define CRC_START UINT32_C(0xffffffff)
 
-/* CRC-32 by half bytes, without the inversion at its end. */
+/* CRC-32 by half bytes, without the final inversion. */
 static uint32_t crc_on(uint32_t crc, uint8_t byte)
 {
     static const uint32_t table[16] = {0x00000000, 0x1db71064, 0x3b6e20c8, 0x26d930ac,
@@ -22,7 +22,7 @@ uint8_t onboard_link_next(uint8_t sequence)
     return sequence == UINT8_MAX ? 1 : (uint8_t)(sequence + 1);
 }
 
-/* A frame on its way out: code is the place of the code of the block being filled. */
+/* A frame being sent: code is the position of the current block's code. */
 struct sender {
     uint8_t *line;
     size_t n;
@@ -40,7 +40,7 @@ static void end_block(struct sender *sender)
     sender->line[sender->code] = (uint8_t)(sender->n - sender->code);
 }
 
-/* A block of 254 bytes without a zero stands for itself, all others for a zero after them. */
+/* A block of 254 bytes without a zero represents only itself; any other implies a zero after it. */
 static void send(struct sender *sender, uint8_t byte)
 {
     sender->crc = crc_on(sender->crc, byte);
@@ -76,7 +76,8 @@ size_t onboard_link_encode(uint8_t sequence, uint8_t type, const uint8_t *bytes,
     return sender.n;
 }
 
-/* One byte of the content. The CRC's own bytes go where there is still room, and do not count. */
+/* Adds one byte of the content. The CRC's own bytes are stored if there is room, and
+ * do not count. */
 static void take_content(struct onboard_receiver *receiver, uint8_t byte)
 {
     uint32_t at = receiver->n++;
@@ -104,7 +105,7 @@ void onboard_link_init(struct onboard_receiver *receiver, struct onboard_packet 
     begin_frame(receiver);
 }
 
-/* What ends at a zero. Nothing at all is no damage: zeros stand on both sides of a frame. */
+/* Ends a frame at a zero. An empty one is no damage: there are zeros on both sides of a frame. */
 static enum onboard_link_event end_frame(struct onboard_receiver *receiver)
 {
     bool empty = receiver->n == 0 && !receiver->owed && !receiver->bad;

@@ -1,12 +1,12 @@
 /*
- * packet.h: what goes in and out of the controller, as bytes: little-endian, whatever the machine.
+ * packet.h: the controller's input and output as bytes, little-endian on every machine.
  *
- * A packet is a type, a length (2 bytes) and that many bytes. A recording is a row of packets; on
- * a serial line each stands in a frame with a CRC (link.h). Requests go to the controller, each is
- * answered.
+ * A packet is a type, a length (2 bytes) and that many bytes. A recording is a sequence of packets;
+ * on a serial line each is in a frame with a CRC (link.h). Requests go to the controller, which
+ * answers each.
  *
  *   OPEN     links (1), features (2), keyframes (1), entries (2), seed (8), name of the policy (16,
- *            with zeros behind it)
+ *            padded with zeros)
  *   TRIAL    number (4)
  *   FRAME    pushing (1), n (2), then n times id (4), x, y (4 each)
  *   PERCEIVE, CHOOSE, CLOSE    nothing
@@ -51,7 +51,7 @@ enum onboard_packet_type {
     ONBOARD_BAD
 };
 
-/* The most bytes of a packet: a model with everything in it, or a frame. */
+/* The largest packet: a full model, or a frame. */
 #define ONBOARD_MODEL_BYTES                                                                        \
     (5 + 28 * GRRL_MAX_LINKS + 59 * GRRL_MAX_JOINTS + 13 * GRRL_MAX_FEATURES)
 #define ONBOARD_FRAME_BYTES (3 + 12 * GRRL_MAX_FEATURES)
@@ -61,37 +61,37 @@ enum onboard_packet_type {
 struct onboard_packet {
     uint8_t type;
     uint16_t n;
-    bool bad; /* written beyond the end, or read beyond it */
+    bool bad; /* a write or read went beyond the end */
     uint16_t at;
     uint8_t bytes[ONBOARD_MAX_BYTES];
 };
 
-/* Points of one frame, where the library's frame refers to. */
+/* The points of one frame, to which the library's frame points. */
 struct onboard_points {
     int32_t id[GRRL_MAX_FEATURES];
     float x_m[GRRL_MAX_FEATURES];
     float y_m[GRRL_MAX_FEATURES];
 };
 
-/* Begins to write a packet. */
+/* Starts a new packet. */
 void onboard_packet_begin(struct onboard_packet *packet, uint8_t type);
 
 void onboard_put(struct onboard_packet *packet, uint64_t value, unsigned bytes);
 void onboard_put_float(struct onboard_packet *packet, float value);
 
-/* Reads on from packet->at; 0, and bad, beyond the end. */
+/* Reads on from packet->at; beyond the end it returns 0 and sets bad. */
 uint64_t onboard_get(struct onboard_packet *packet, unsigned bytes);
 float onboard_get_float(struct onboard_packet *packet);
 
-/* Whether all was read and nothing beyond. */
+/* Whether everything was read, and nothing beyond the end. */
 bool onboard_packet_used_up(const struct onboard_packet *packet);
 
-/* OPEN, for a controller with the capacities of whoever calls this. */
+/* Writes OPEN, for a controller with the caller's capacities. */
 void onboard_put_open(struct onboard_packet *packet, uint64_t seed, const char *policy);
 
 void onboard_put_frame(struct onboard_packet *packet, const struct grrl_frame *frame, bool pushing);
 
-/* False, and an empty frame, for a packet that is none or holds more points than there is room. */
+/* False, and an empty frame, if the packet is not a frame or holds more points than fit. */
 bool onboard_get_frame(struct onboard_packet *packet, struct onboard_points *points,
                        struct grrl_frame *frame, bool *pushing);
 
@@ -100,8 +100,8 @@ void onboard_put_decision(struct onboard_packet *packet, const struct grrl_decis
 void onboard_put_update(struct onboard_packet *packet, const struct grrl_update *update,
                         const struct grrl_usage *usage);
 
-/* The other way round, for who asked: from packet->at on. False, and the result is unspecified, for
- * bytes that are none, or with a count or an index beyond what there is room for. */
+/* The reverse direction, for the side that asked; reads from packet->at. False, with an unspecified
+ * result, if the bytes are invalid, or a count or an index exceeds its capacity. */
 bool onboard_get_model(struct onboard_packet *packet, struct grrl_model *model);
 bool onboard_get_decision(struct onboard_packet *packet, struct grrl_decision *decision);
 bool onboard_get_update(struct onboard_packet *packet, struct grrl_update *update,

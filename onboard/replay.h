@@ -1,4 +1,4 @@
-/* replay.h: a recorded run, packet after packet, through a controller. */
+/* replay.h: feeds a recorded run to a controller, packet by packet. */
 #ifndef ONBOARD_REPLAY_H
 #define ONBOARD_REPLAY_H
 
@@ -12,7 +12,7 @@ struct onboard_source {
     int (*read)(void *context, void *bytes, size_t size);
 };
 
-/* How far a replay came; after a failure, where it ended. */
+/* How far a replay got; after a failure, where it stopped. */
 struct onboard_progress {
     uint32_t packets;
     uint32_t trials;
@@ -20,8 +20,8 @@ struct onboard_progress {
 };
 
 /*
- * Runs from OPEN to CLOSE. GRRL_ERR_IO: the recording ends early; GRRL_ERR_CORRUPT: the controller
- * came to other results than the recorder; else as onboard_controller_take.
+ * Runs from OPEN to CLOSE. GRRL_ERR_IO: the recording ends early; GRRL_ERR_CORRUPT: the results
+ * differ from the recorded ones; other statuses as for onboard_controller_take.
  */
 GRRL_MUST_USE enum grrl_status onboard_replay(struct onboard_controller *controller,
                                               const struct onboard_source *source,

@@ -1,4 +1,4 @@
-/* Answers frames from the line, repeated ones from memory. */
+/* Answers frames from the line; answers repeated ones from memory. */
 #include "server.h"
 
 void onboard_server_init(struct onboard_server *server, struct onboard_controller *controller)
@@ -38,7 +38,7 @@ size_t onboard_server_take(struct onboard_server *server, uint8_t byte)
     uint8_t sequence = server->receiver.sequence;
     if (sequence == 0 || sequence != server->done) {
         server->done = sequence;
-        /* A failure is the answer REFUSED. */
+        /* After a failure the answer is REFUSED. */
         (void)!onboard_controller_take(server->controller, &server->request);
     } else {
         server->repeated++;

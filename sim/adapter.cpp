@@ -1,4 +1,4 @@
-/* adapter.cpp: pushes in double, points in float. */
+/* adapter.cpp: converts pushes (double) and points (float). */
 #include "adapter.hpp"
 
 namespace grrl_sim

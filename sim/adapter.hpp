@@ -1,4 +1,5 @@
-/* adapter.hpp: from the simulator to the library and back: frames one way, pushes the other. */
+/* adapter.hpp: converts the simulator's frames for the library, and the library's pushes for the
+ * simulator. */
 #ifndef GRRL_SIM_ADAPTER_HPP
 #define GRRL_SIM_ADAPTER_HPP
 
@@ -10,13 +11,13 @@
 namespace grrl_sim
 {
 
-/* What the learner wants, as the robot takes it. */
+/* The learner's push as a robot command. */
 PushCommand command_of(const grrl_push &push);
 
 /* Copies the points of a frame, at most `capacity`. Returns how many. */
 int copy_points(const Frame &frame, int capacity, int32_t *id, float *x_m, float *y_m);
 
-/* The arrays behind a frame of the library. */
+/* The arrays that a library frame points to. */
 class FrameArrays
 {
 public:

@@ -55,13 +55,13 @@ inline Vec2 rotate(Vec2 v, double angle)
     return {d.x * v.x - d.y * v.y, d.y * v.x + d.x * v.y};
 }
 
-/* Into (-pi, pi]. */
+/* Wraps an angle into (-pi, pi]. */
 inline double wrap_angle(double angle)
 {
     return angle - 2.0 * pi * std::ceil(angle / (2.0 * pi) - 0.5);
 }
 
-/* A frame in another one. */
+/* The pose of one frame in another. */
 struct Pose {
     Vec2 position;
     double angle = 0.0;
@@ -88,7 +88,7 @@ struct Rectangle {
     double half_width = 0.0;
 };
 
-/* From a point to the rectangle, 0 inside. */
+/* Distance from a point to the rectangle, 0 inside. */
 inline double distance(const Rectangle &rectangle, Vec2 point)
 {
     Vec2 local = transform(inverse(rectangle.pose), point);
@@ -97,7 +97,7 @@ inline double distance(const Rectangle &rectangle, Vec2 point)
     return std::sqrt(dx * dx + dy * dy);
 }
 
-/* Whether a line along one of a's axes separates them by more than the margin. */
+/* Whether a line along one of a's axes separates the two by more than the margin. */
 inline bool separated_by_axes_of(const Rectangle &a, const Rectangle &b, double margin)
 {
     Vec2 centre = transform(inverse(a.pose), b.pose.position);
@@ -108,7 +108,7 @@ inline bool separated_by_axes_of(const Rectangle &a, const Rectangle &b, double 
            std::abs(centre.y) > a.half_width + reach_y + margin;
 }
 
-/* Whether two rectangles come closer than the margin (separating axes). */
+/* Whether two rectangles are closer than the margin (separating axes). */
 inline bool overlap(const Rectangle &a, const Rectangle &b, double margin)
 {
     return !separated_by_axes_of(a, b, margin) && !separated_by_axes_of(b, a, margin);

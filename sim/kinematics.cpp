@@ -1,4 +1,4 @@
-/* Spanning forests, poses from joint values, and Newton steps that close loops. */
+/* Spanning forests, poses from joint values, and Newton steps to close loops. */
 #include "kinematics.hpp"
 
 #include <cstddef>
@@ -9,11 +9,11 @@ namespace grrl_sim
 namespace
 {
 
-/* Turns angle errors into lengths, so that one tolerance serves both. */
+/* Converts angle errors to lengths, so that one tolerance serves both. */
 constexpr double angle_lever_m = 0.1;
 constexpr double closing_tolerance_m = 1e-7;
 
-/* Row-major, as small as mechanisms are. */
+/* Row-major and dense; mechanisms are small. */
 struct Matrix {
     size_t rows = 0;
     size_t columns = 0;
@@ -29,7 +29,7 @@ size_t index(int i)
     return static_cast<size_t>(i);
 }
 
-/* b in a's frame at a value. */
+/* b's pose in a's frame at a joint value. */
 Pose relative_pose(const JointSpec &joint, double value)
 {
     bool turns = joint.type == GRRL_REVOLUTE;
@@ -75,7 +75,8 @@ double squared_norm(const std::vector<double> &v)
     return sum;
 }
 
-/* Column i: the derivative of f by the value of the forest's i-th joint (central difference). */
+/* Column i: the derivative of f with respect to the forest's i-th joint value (central
+ * difference). */
 template <typename Function>
 Matrix derivative(const Forest &forest, std::vector<double> values, size_t rows, Function f)
 {
@@ -95,7 +96,8 @@ Matrix derivative(const Forest &forest, std::vector<double> values, size_t rows,
     return jacobian;
 }
 
-/* Solves (J^T J + damping I) x = -J^T e by Cholesky; the damping makes it positive definite. */
+/* Solves (J^T J + damping I) x = -J^T e by Cholesky; the damping makes the matrix positive
+ * definite. */
 std::vector<double> damped_step(const Matrix &jacobian, const std::vector<double> &errors,
                                 double damping)
 {
@@ -174,7 +176,7 @@ Forest spanning_forest(const ObjectSpec &object)
     Forest forest;
     forest.component.assign(n, -1);
     std::vector<bool> used(object.joints.size(), false);
-    std::vector<int> order; /* fixed links first: they root their component */
+    std::vector<int> order; /* fixed links first, so that they become the roots */
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < n; i++)
             if (object.links[i].fixed == (pass == 0))
@@ -271,7 +273,7 @@ std::vector<bool> movable_joints(const ObjectSpec &object, const Forest &forest,
     Matrix motion = derivative(forest, values, object.joints.size(), values_of);
     std::vector<bool> movable(object.joints.size());
     for (size_t j = 0; j < object.joints.size(); j++) {
-        /* A motion that keeps the loops closed is orthogonal to every constraint: the joint moves
+        /* A motion that keeps the loops closed is orthogonal to every constraint. The joint moves
          * in some such motion unless its row lies in their span. */
         std::vector<double> row(motion.columns);
         for (size_t c = 0; c < row.size(); c++)

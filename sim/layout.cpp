@@ -1,11 +1,11 @@
 /*
- * layout.cpp: gives the links and joints of a bare structure their geometry.
+ * layout.cpp: assigns geometry to the links and joints of a bare structure.
  *
- * Every link has two slots at its ends, the others lie along its sides. A depth-first walk hangs
- * each link by its own -x end into the next slot of its parent, loops before branches, so that
- * chains are straight, branches stand off sideways and a loop runs through the ends of its links.
- * A loop becomes a polygon: all its corners turn until it closes, and the corner found is the
- * joint's zero (which gives a prismatic corner its angle).
+ * Every link has two slots at its ends; the others lie along its sides. A depth-first walk attaches
+ * each link by its own -x end to the next slot of its parent, loops before branches. Chains are
+ * therefore straight, branches stand out sideways, and a loop runs through the ends of its links. A
+ * loop becomes a polygon: all its corners turn until it closes, and the resulting corner is the
+ * joint's zero (for a prismatic corner it fixes the angle).
  */
 #include <algorithm>
 
@@ -45,7 +45,7 @@ int count_bits(uint32_t mask)
     return count;
 }
 
-/* Links reached from a without the joint between a and b. */
+/* Links reachable from a without the joint between a and b. */
 uint32_t reached_around(const grrl_graph &graph, int a, int b)
 {
     uint32_t reached = UINT32_C(1) << a;
@@ -84,7 +84,7 @@ public:
     {
         for (size_t i = 0; i < object_.links.size(); i++)
             make_room(static_cast<int>(i));
-        for (int pass = 0; pass < 2; pass++) /* the background first: it is a root */
+        for (int pass = 0; pass < 2; pass++) /* the background first, because it is a root */
             for (size_t i = 0; i < object_.links.size(); i++)
                 if (!seen_[i] && object_.links[i].fixed == (pass == 0))
                     walk(static_cast<int>(i));
@@ -122,7 +122,7 @@ private:
                 sign * pi / 2.0};
     }
 
-    /* The next unplaced joint of a link, those on loops first; -1 when all are placed. */
+    /* The next unplaced joint of a link, joints on loops first; -1 if all are placed. */
     int next_joint(int link, const std::vector<bool> &placed) const
     {
         int branch = -1;
@@ -180,7 +180,7 @@ private:
     ObjectSpec &object_;
     std::vector<int> used_slots_;
     std::vector<bool> seen_;
-    std::vector<bool> entered_; /* by its -x end, which is then its first slot */
+    std::vector<bool> entered_; /* attached by its -x end, which is then its first slot */
 };
 
 std::string joint_text(const ObjectSpec &object, const JointSpec &joint)
@@ -190,7 +190,7 @@ std::string joint_text(const ObjectSpec &object, const JointSpec &joint)
            object.links[static_cast<size_t>(joint.b)].name;
 }
 
-/* The joints on loops, each with the loop's links as a mask. */
+/* The joints on loops, each with the links of its loop as a mask. */
 std::vector<bool> loop_joints(const ObjectSpec &object)
 {
     std::vector<bool> on_loop;
@@ -215,7 +215,7 @@ std::string names_on_loops(const ObjectSpec &object, const std::vector<bool> &on
     return names;
 }
 
-/* Values to start closing from: a regular polygon at first, then anything. */
+/* Initial values for closing the loops: first a regular polygon, then random ones. */
 std::vector<double> first_guess(const ObjectSpec &object, const std::vector<bool> &on_loop,
                                 int attempt, Random &random)
 {
@@ -243,8 +243,9 @@ bool within_limits(const ObjectSpec &object, const std::vector<double> &values)
     return true;
 }
 
-/* Makes the closed configuration the zero of the joints whose geometry is ours. */
-void adopt(ObjectSpec &object, const std::vector<bool> &on_loop, const std::vector<double> &values)
+/* Makes the closed configuration the zero of the joints whose geometry this file chose. */
+void set_zero(ObjectSpec &object, const std::vector<bool> &on_loop,
+              const std::vector<double> &values)
 {
     for (size_t j = 0; j < values.size(); j++) {
         JointSpec &joint = object.joints[j];
@@ -279,7 +280,7 @@ std::string immobile_joint(const ObjectSpec &object)
 
 std::string close_object(ObjectSpec &object, const std::vector<bool> &on_loop)
 {
-    ObjectSpec hinged = object; /* every corner of a loop turns until it is closed */
+    ObjectSpec hinged = object; /* every corner of a loop turns until the loop is closed */
     for (size_t j = 0; j < on_loop.size(); j++) {
         if (!on_loop[j] || hinged.joints[j].given)
             continue;
@@ -288,7 +289,7 @@ std::string close_object(ObjectSpec &object, const std::vector<bool> &on_loop)
         hinged.joints[j].upper = pi;
     }
     Forest forest = spanning_forest(hinged);
-    Random random(1, Stream::OBJECT); /* the same description is always the same object */
+    Random random(1, Stream::OBJECT); /* the same description always gives the same object */
     std::string immobile;
     std::optional<ObjectSpec> fallback;
     for (int attempt = 0; attempt < loop_attempts; attempt++) {
@@ -296,7 +297,7 @@ std::string close_object(ObjectSpec &object, const std::vector<bool> &on_loop)
         if (!close_loops(hinged, forest, values) || !within_limits(hinged, values))
             continue;
         ObjectSpec closed = object;
-        adopt(closed, on_loop, values);
+        set_zero(closed, on_loop, values);
         std::string problem = immobile_joint(closed);
         if (!problem.empty()) {
             immobile = problem;

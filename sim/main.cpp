@@ -1,4 +1,4 @@
-/* grrl-sim: options, files, signals and lines on the terminal around the node. */
+/* grrl-sim: options, files, signals and terminal output around the node. */
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -21,8 +21,8 @@ constexpr int64_t hint_period_us = 5000000;
 
 volatile std::sig_atomic_t stop = 0;
 
-/* The time of day at the start, and what has passed since: a clock that is set meanwhile must not
- * change what is due. */
+/* The time of day at the start plus the time since. Setting the clock meanwhile must not change
+ * what is due. */
 int64_t now_us()
 {
     using namespace std::chrono;
@@ -52,7 +52,7 @@ const char *outcome_text(int8_t outcome)
     }
 }
 
-/* Everything the node says, as an LCM log. */
+/* Writes every message of the node to an LCM log. */
 class Log
 {
 public:
@@ -69,7 +69,7 @@ public:
 
     void write(const char *channel, const void *data, uint32_t size)
     {
-        /* The interface lacks const; nothing is changed. */
+        /* The interface lacks const; the data is not changed. */
         lcm_eventlog_event_t event{};
         event.timestamp = now_us();
         event.channellen = static_cast<int32_t>(std::strlen(channel));
@@ -138,21 +138,21 @@ lcm_t *open_lcm(const std::string &url)
     lcm_t *lcm = lcm_create(url.empty() ? nullptr : url.c_str());
     if (lcm != nullptr && lcm_get_fileno(lcm) >= 0)
         return lcm;
-    (void)std::fprintf(stderr, "grrl-sim: LCM does not start. If this machine has no network:\n"
+    (void)std::fprintf(stderr, "grrl-sim: cannot start LCM. If this machine has no network:\n"
                                "  ip link set lo up; ip route add 224.0.0.0/4 dev lo\n"
-                               "or name another provider with --lcm-url.\n");
+                               "or choose another provider with --lcm-url.\n");
     if (lcm != nullptr)
         lcm_destroy(lcm);
     return nullptr;
 }
 
-/* False when the wait for an agent is over. */
+/* False once the wait for an agent is over. */
 bool wait_for_agent(const Node &node, const Options &options, int64_t &hint_us)
 {
     int64_t silent = node.agent_silent_us();
     if (options.agent_timeout_s > 0.0 &&
         static_cast<double>(silent) >= options.agent_timeout_s * 1e6) {
-        (void)std::fprintf(stderr, "grrl-sim: no agent for %g s, giving up\n",
+        (void)std::fprintf(stderr, "grrl-sim: heard no agent for %g s, giving up\n",
                            options.agent_timeout_s);
         return false;
     }
@@ -172,7 +172,7 @@ bool loop(Node &node, lcm_t *lcm, const Options &options, const Results &results
     int64_t hint_us = 0;
     while (stop == 0 && !node.finished()) {
         if (lcm_handle_timeout(lcm, poll_ms) < 0 && stop == 0) {
-            (void)std::fprintf(stderr, "grrl-sim: LCM fails to receive\n");
+            (void)std::fprintf(stderr, "grrl-sim: LCM failed to receive\n");
             return false;
         }
         node.tick();
@@ -183,7 +183,7 @@ bool loop(Node &node, lcm_t *lcm, const Options &options, const Results &results
         }
         if (!wait_for_agent(node, options, hint_us))
             return false;
-        if (node.agent_is_blind()) {
+        if (node.agent_has_nothing_to_push()) {
             (void)std::fprintf(stderr, "grrl-sim: the agent finds nothing to push, giving up: too "
                                        "few points (--dropout) or too much noise (--noise)?\n");
             return false;

@@ -1,4 +1,4 @@
-/* The course of a trial as supervisor, tracker and robot see it, and messages coming in. */
+/* The course of a trial as supervisor, tracker and robot see it, and incoming messages. */
 #include "node.hpp"
 
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr int64_t silence_us = 1000000;
-constexpr int most_looks = 10; /* at a scene in which the agent finds nothing to push */
+constexpr int max_retries = 10; /* at a scene in which the agent finds nothing to push */
 
 int8_t reason_on_the_wire(PushReason reason)
 {
@@ -70,14 +70,14 @@ void Node::subscribe(const char *channel, lcm_msg_handler_t handler)
 {
     lcm_subscription_t *subscription = lcm_subscribe(lcm_, channel, handler, this);
     if (subscription == nullptr)
-        throw std::runtime_error(std::string("LCM refuses to subscribe to ") + channel);
-    /* 0 is unbounded: LCM's own default drops the newest of 30 without a word. */
+        throw std::runtime_error(std::string("LCM refused the subscription to ") + channel);
+    /* 0 is unbounded; LCM's default of 30 silently drops the newest message. */
     (void)lcm_subscription_set_queue_capacity(subscription, 0);
     subscriptions_.push_back(subscription);
 }
 
-/* Tells of the first malformed message, later ones only count. */
-bool Node::refuse(const grrl_wire_why &why)
+/* Reports the first malformed message and only counts later ones. */
+bool Node::reject(const grrl_wire_why &why)
 {
     if (rejected_++ == 0)
         note(why.text);
@@ -85,19 +85,19 @@ bool Node::refuse(const grrl_wire_why &why)
 }
 
 /*
- * Whether a message comes from the agent of this run. Another session takes over when the known one
- * has been silent: it was restarted, and its trial cannot go on.
+ * Whether a message comes from the agent of this run. Another session takes over if the known one
+ * has been silent: the agent was restarted, and its trial cannot continue.
  */
-bool Node::known_agent(int64_t session_id)
+bool Node::accept_session(int64_t session_id)
 {
     int64_t now = config_.now_us();
     if (agent_session_id_ != 0 && session_id != agent_session_id_) {
         if (now - agent_heard_us_ < silence_us) {
             if (foreign_++ == 0)
-                note("another agent answers, too, and is ignored while the first one is there");
+                note("another agent answers too; it is ignored while the first one is present");
             return false;
         }
-        note("the agent was restarted, its trial is aborted");
+        note("the agent was restarted; its trial is aborted");
         agent_revision_ = 0;
         if (frames_flow())
             end_trial(GRRL_TRIAL_T_ABORTED);
@@ -112,11 +112,11 @@ void Node::on_command(const lcm_recv_buf_t &buffer)
     grrl_push_command_t command;
     grrl_wire_why why;
     if (!grrl_wire_decode_push_command(buffer.data, buffer.data_size, &command, &why)) {
-        refuse(why);
+        reject(why);
         return;
     }
-    if (command.plant_session_id == config_.session_id && known_agent(command.session_id))
-        obey(command);
+    if (command.plant_session_id == config_.session_id && accept_session(command.session_id))
+        execute(command);
 }
 
 void Node::on_agent_status(const lcm_recv_buf_t &buffer)
@@ -124,16 +124,16 @@ void Node::on_agent_status(const lcm_recv_buf_t &buffer)
     grrl_agent_status_t status;
     grrl_wire_why why;
     if (!grrl_wire_decode_agent_status(buffer.data, buffer.data_size, &status, &why))
-        refuse(why);
+        reject(why);
     else if (status.plant_session_id == config_.session_id)
-        (void)known_agent(status.session_id);
+        (void)accept_session(status.session_id);
 }
 
 void Node::on_model(const lcm_recv_buf_t &buffer)
 {
     grrl_wire_why why;
     if (!grrl_wire_decode_model(buffer.data, buffer.data_size, &model_, &why)) {
-        refuse(why);
+        reject(why);
         return;
     }
     const grrl_model_t &model = model_.message;
@@ -146,7 +146,7 @@ void Node::on_decision(const lcm_recv_buf_t &buffer)
     grrl_decision_t decision;
     grrl_wire_why why;
     if (!grrl_wire_decode_decision(buffer.data, buffer.data_size, &decision, &why)) {
-        refuse(why);
+        reject(why);
         return;
     }
     if (decision.session_id != agent_session_id_ || decision.trial_id != trial_id_)
@@ -157,7 +157,7 @@ void Node::on_decision(const lcm_recv_buf_t &buffer)
 
 bool Node::frames_flow() const
 {
-    return stage_ == Stage::RESTING || stage_ == Stage::DECIDING || stage_ == Stage::PUSHING;
+    return phase_ == Phase::RESTING || phase_ == Phase::DECIDING || phase_ == Phase::PUSHING;
 }
 
 void Node::begin_trial()
@@ -165,14 +165,14 @@ void Node::begin_trial()
     trial_id_++;
     pushes_ = 0;
     rest_frames_ = 0;
-    looks_ = 0;
+    retries_ = 0;
     ack_cmd_seq_ = 0;
     command_ = {};
     decision_ = {};
     status_ = {};
     world_ =
         std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
-    stage_ = Stage::OFFER;
+    phase_ = Phase::OFFER;
     trial_.judged_cmd_seq = -1;
     announce(GRRL_TRIAL_T_RUNNING, GRRL_TRIAL_T_NONE);
 }
@@ -189,7 +189,7 @@ void Node::announce(int8_t phase, int8_t outcome)
 
 void Node::end_trial(int8_t outcome)
 {
-    stage_ = Stage::ENDED;
+    phase_ = Phase::ENDED;
     if (outcome != GRRL_TRIAL_T_ABORTED)
         counted_trials_++;
     announce(GRRL_TRIAL_T_ENDED, outcome);
@@ -199,13 +199,13 @@ void Node::end_trial(int8_t outcome)
 
 void Node::judge(const grrl_model_t &model)
 {
-    bool new_model = stage_ == Stage::DECIDING && model.cmd_seq == ack_cmd_seq_ &&
+    bool new_model = phase_ == Phase::DECIDING && model.cmd_seq == ack_cmd_seq_ &&
                      trial_.judged_cmd_seq != ack_cmd_seq_;
     if (!new_model)
         return;
     trial_.judged_cmd_seq = ack_cmd_seq_;
-    grrl_graph believed;
-    if (structure_of(model, believed) && supervisor_.judge(believed).correct)
+    grrl_graph estimated;
+    if (structure_of(model, estimated) && supervisor_.judge(estimated).correct)
         end_trial(GRRL_TRIAL_T_DISCOVERED);
     else if (pushes_ >= config_.cap)
         end_trial(GRRL_TRIAL_T_CAPPED);
@@ -213,60 +213,60 @@ void Node::judge(const grrl_model_t &model)
         announce(GRRL_TRIAL_T_RUNNING, GRRL_TRIAL_T_NONE);
 }
 
-/* A command counts once it agrees with the newest word of the supervisor and, in lock-step, with
- * the newest frame; whatever else comes is an answer to something older. */
-void Node::obey(const grrl_push_command_t &command)
+/* A command counts if it refers to the supervisor's latest message and, in lock-step, to the latest
+ * frame. Anything else answers something older. */
+void Node::execute(const grrl_push_command_t &command)
 {
     if (command.trial_revision != trial_.revision)
         return;
     agent_revision_ = command.trial_revision;
-    if (stage_ == Stage::OFFER) {
-        stage_ = Stage::RESTING;
+    if (phase_ == Phase::OFFER) {
+        phase_ = Phase::RESTING;
         frame_due_us_ = config_.now_us();
         advance();
-    } else if (stage_ == Stage::ENDED) {
+    } else if (phase_ == Phase::ENDED) {
         if (counted_trials_ < config_.trials) {
             begin_trial();
         } else {
-            stage_ = Stage::FINISHING;
+            phase_ = Phase::FINISHING;
             finishing_us_ = config_.now_us();
             announce(GRRL_TRIAL_T_FINISHED, GRRL_TRIAL_T_NONE);
         }
-    } else if (stage_ == Stage::FINISHING) {
-        stage_ = Stage::DONE;
+    } else if (phase_ == Phase::FINISHING) {
+        phase_ = Phase::DONE;
     } else if (command.trial_id == trial_id_ && (config_.real_time || command.points_seq == seq_)) {
-        if (stage_ != Stage::DECIDING) {
+        if (phase_ != Phase::DECIDING) {
             advance();
         } else if (command.kind == GRRL_PUSH_COMMAND_T_PUSH) {
             command_ = command;
             push_if_complete();
         } else if (!config_.real_time && trial_.judged_cmd_seq == ack_cmd_seq_) {
-            look_again();
+            repeat_settling();
         }
     }
 }
 
-/* The agent has all it waited for and yet no push: it sees nothing it could push. In further frames
- * it perhaps does; in real time they come anyway. */
-void Node::look_again()
+/* The agent is up to date but sends no push: it sees nothing to push. Further frames may help; in
+ * real time they come anyway. */
+void Node::repeat_settling()
 {
-    if (++looks_ > most_looks)
+    if (++retries_ > max_retries)
         return;
-    stage_ = Stage::RESTING;
+    phase_ = Phase::RESTING;
     rest_frames_ = 0;
     advance();
 }
 
-bool Node::agent_is_blind() const
+bool Node::agent_has_nothing_to_push() const
 {
-    return looks_ > most_looks;
+    return retries_ > max_retries;
 }
 
-/* A push needs its decision, too, so that every log tells why; and the supervisor's word. */
+/* A push needs its decision too, so that every log explains it, and the supervisor's judgement. */
 void Node::push_if_complete()
 {
     int32_t next = ack_cmd_seq_ + 1;
-    if (stage_ == Stage::DECIDING && trial_.judged_cmd_seq == ack_cmd_seq_ &&
+    if (phase_ == Phase::DECIDING && trial_.judged_cmd_seq == ack_cmd_seq_ &&
         command_.cmd_seq == next && decision_.cmd_seq == next)
         start_push();
 }
@@ -275,15 +275,15 @@ void Node::start_push()
 {
     ack_cmd_seq_ = command_.cmd_seq;
     pushes_++;
-    looks_ = 0;
+    retries_ = 0;
     rest_frames_ = 0;
     std::string problem = world_->begin_push(push_of(command_));
     if (problem.empty()) {
-        stage_ = Stage::PUSHING;
+        phase_ = Phase::PUSHING;
         set_push_state(GRRL_PUSH_STATUS_T_MOVING, GRRL_PUSH_STATUS_T_NONE);
     } else {
-        /* It counts as a push without effect: the agent sees that nothing moved. */
-        stage_ = Stage::RESTING;
+        /* Counts as a push without effect: the agent sees that nothing moved. */
+        phase_ = Phase::RESTING;
         set_push_state(GRRL_PUSH_STATUS_T_REFUSED, GRRL_PUSH_STATUS_T_BAD_COMMAND);
         note("push refused: " + problem);
     }
@@ -299,19 +299,19 @@ void Node::set_push_state(int8_t state, int8_t reason)
     publish_push_status();
 }
 
-/* In lock-step the next frame is due as soon as the last one was answered. */
+/* In lock-step the next frame is due once the last one was answered. */
 void Node::advance()
 {
     if (!config_.real_time && frames_flow())
         send_frame();
 }
 
-/* Lets the world go on for a frame; the phase to tell. */
-int8_t Node::move_on()
+/* Advances the world by one frame; returns the phase to report. */
+int8_t Node::advance_world()
 {
-    if (stage_ == Stage::PUSHING) {
+    if (phase_ == Phase::PUSHING) {
         if (!world_->step_frame()) {
-            stage_ = Stage::RESTING;
+            phase_ = Phase::RESTING;
             rest_frames_ = 0;
             set_push_state(GRRL_PUSH_STATUS_T_DONE,
                            reason_on_the_wire(world_->push_result().reason));
@@ -320,14 +320,14 @@ int8_t Node::move_on()
     }
     if (++rest_frames_ < GRRL_SETTLING_FRAMES)
         return GRRL_POINTS_T_REST;
-    stage_ = Stage::DECIDING;
+    phase_ = Phase::DECIDING;
     return GRRL_POINTS_T_SETTLED;
 }
 
 void Node::send_frame()
 {
     grrl_points_t &points = points_.message;
-    points.phase = move_on();
+    points.phase = advance_world();
     points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME : GRRL_POINTS_T_LOCK_STEP;
     points.session_id = config_.session_id;
     points.seq = ++seq_;

@@ -1,9 +1,9 @@
 /*
  * node.hpp: the simulated world on LCM: tracker, robot and supervisor in one, driven by events.
  *
- * The node subscribes and publishes on an lcm_t of the caller and asks the caller for the time; it
- * waits for nothing. Call lcm_handle and tick in turns, tick at least every 10 ms, until finished.
- * docs/messages.md has the protocol.
+ * The node subscribes and publishes on the caller's lcm_t and asks the caller for the time; it
+ * never waits. Call lcm_handle and tick alternately, tick at least every 10 ms, until finished.
+ * docs/messages.md describes the protocol.
  */
 #ifndef GRRL_SIM_NODE_HPP
 #define GRRL_SIM_NODE_HPP
@@ -33,15 +33,15 @@ struct NodeConfig {
     ObjectSpec object;
     WorldParams world;
     uint64_t seed = 1;
-    int trials = 1; /* that are not aborted */
-    int cap = 100;  /* pushes in a trial */
+    int trials = 1; /* number of trials, not counting aborted ones */
+    int cap = 100;  /* most pushes in a trial */
     bool real_time = false;
-    int64_t session_id = 1; /* random, above 0, another one in each run */
+    int64_t session_id = 1; /* random, above 0, different in each run */
 
-    std::function<int64_t()> now_us; /* needed; the others may be empty */
+    std::function<int64_t()> now_us; /* required; the others may be empty */
     std::function<void(const TrialResult &)> on_trial;
     std::function<void(const std::string &)> on_note;
-    /* Every message, published or received, in order. */
+    /* Receives every message, published or received, in order. */
     std::function<void(const char *channel, const void *data, uint32_t size)> on_message;
 };
 
@@ -54,32 +54,33 @@ public:
     Node(const Node &) = delete;
     Node &operator=(const Node &) = delete;
 
-    /* Sends what is due by the clock: frames in real time, repetitions. */
+    /* Sends what is due: frames in real time, repetitions. */
     void tick();
 
-    bool finished() const { return stage_ == Stage::DONE; }
+    bool finished() const { return phase_ == Phase::DONE; }
 
-    /* Since the agent was last heard of, or since the start. */
+    /* Time since the agent was last heard, or since the start. */
     int64_t agent_silent_us() const { return config_.now_us() - agent_heard_us_; }
     bool agent_known() const { return agent_session_id_ != 0; }
 
-    /* Lock-step: it finds nothing to push, however often it looks; the run cannot go on. */
-    bool agent_is_blind() const;
+    /* Lock-step: the agent finds nothing to push even after repeated frames; the run cannot
+     * continue. */
+    bool agent_has_nothing_to_push() const;
 
     int64_t frames() const { return seq_; }
 
-    /* The trial's truth, to measure with; nothing for an agent. */
+    /* The truth about the trial, for measurements; not for an agent. */
     const World &world() const { return *world_; }
     int64_t rejected() const { return rejected_; }
     int64_t foreign() const { return foreign_; }
 
 private:
-    enum class Stage {
-        OFFER,    /* a trial is announced, the agent has not agreed yet */
+    enum class Phase {
+        OFFER,    /* a trial is announced; the agent has not confirmed it yet */
         RESTING,  /* until the scene has settled */
         DECIDING, /* settled: model, judgement, next push */
         PUSHING,
-        ENDED, /* the agent has not agreed yet */
+        ENDED, /* the agent has not confirmed the end yet */
         FINISHING,
         DONE
     };
@@ -91,19 +92,19 @@ private:
     void on_model(const lcm_recv_buf_t &buffer);
     void on_decision(const lcm_recv_buf_t &buffer);
     void on_agent_status(const lcm_recv_buf_t &buffer);
-    bool refuse(const grrl_wire_why &why);
-    bool known_agent(int64_t session_id);
+    bool reject(const grrl_wire_why &why);
+    bool accept_session(int64_t session_id);
 
     void begin_trial();
     void announce(int8_t phase, int8_t outcome);
     void end_trial(int8_t outcome);
     void judge(const grrl_model_t &model);
-    void obey(const grrl_push_command_t &command);
+    void execute(const grrl_push_command_t &command);
     void push_if_complete();
     void start_push();
     void advance();
-    void look_again();
-    int8_t move_on();
+    void repeat_settling();
+    int8_t advance_world();
     void send_frame();
     void set_push_state(int8_t state, int8_t reason);
 
@@ -122,12 +123,12 @@ private:
     Supervisor supervisor_;
     std::unique_ptr<World> world_;
 
-    Stage stage_ = Stage::OFFER;
+    Phase phase_ = Phase::OFFER;
     int32_t trial_id_ = 0;
     int counted_trials_ = 0;
     int pushes_ = 0;
     int rest_frames_ = 0;
-    int looks_ = 0; /* further ones since the last push */
+    int retries_ = 0; /* further frames since the last push */
     int32_t ack_cmd_seq_ = 0;
     int64_t seq_ = 0;
 
@@ -135,8 +136,8 @@ private:
     grrl_wire_points points_{};
     grrl_push_status_t status_{};
     grrl_wire_model model_{};
-    grrl_push_command_t command_{}; /* the next push, once it has come */
-    grrl_decision_t decision_{};    /* the newest */
+    grrl_push_command_t command_{}; /* the next push, once received */
+    grrl_decision_t decision_{};    /* the latest decision */
     Frame frame_;
     uint8_t bytes_[GRRL_WIRE_MAX_BYTES];
 
@@ -146,7 +147,7 @@ private:
     int64_t rejected_ = 0;
     int64_t foreign_ = 0;
 
-    int64_t sent_us_ = 0; /* lock-step: when something last went out */
+    int64_t sent_us_ = 0; /* lock-step: time of the last transmission */
     int64_t trial_us_ = 0;
     int64_t status_us_ = 0;
     int64_t frame_due_us_ = 0;

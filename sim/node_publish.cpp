@@ -1,4 +1,4 @@
-/* Messages going out, at once and by the clock. */
+/* Outgoing messages, on events and by the clock. */
 #include "node.hpp"
 
 namespace grrl_sim
@@ -8,7 +8,7 @@ namespace
 {
 
 constexpr int64_t repeat_us = 50000;         /* lock-step: until the agent answers */
-constexpr int64_t trial_period_us = 200000;  /* real time: until the agent agrees */
+constexpr int64_t trial_period_us = 200000;  /* real time: until the agent confirms */
 constexpr int64_t status_period_us = 100000; /* real time */
 constexpr int64_t frame_period_us = 33333;
 constexpr int64_t finish_patience_us = 2000000;
@@ -83,8 +83,8 @@ void Node::tick_real_time(int64_t now)
     if (!frames_flow() || now < frame_due_us_)
         return;
     send_frame();
-    /* At the camera's rate on average; after a pause of the process the rate is kept, not the
-     * count. */
+    /* Keeps the camera's average rate; after a pause of the process, frames are skipped, not caught
+     * up. */
     frame_due_us_ += frame_period_us;
     if (frame_due_us_ < now - frame_period_us)
         frame_due_us_ = now;
@@ -92,11 +92,11 @@ void Node::tick_real_time(int64_t now)
 
 void Node::tick()
 {
-    if (stage_ == Stage::DONE)
+    if (phase_ == Phase::DONE)
         return;
     int64_t now = config_.now_us();
-    if (stage_ == Stage::FINISHING && now - finishing_us_ >= finish_patience_us) {
-        stage_ = Stage::DONE;
+    if (phase_ == Phase::FINISHING && now - finishing_us_ >= finish_patience_us) {
+        phase_ = Phase::DONE;
         return;
     }
     if (config_.real_time)

@@ -21,24 +21,25 @@ std::string at_position(const TermPosition &position, const std::string &message
     return std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + message;
 }
 
-/* l1, f1 or v1. */
+/* Whether a name has the form l1, f1 or v1. */
 bool is_numbered(const std::string &name)
 {
     return name.size() > 1 && std::string("lfv").find(name[0]) != std::string::npos &&
            name.find_first_not_of("0123456789", 1) == std::string::npos;
 }
 
-/* A bare word as a term. Most of them are names of files or objects with a part missing, and no
- * links. */
+/* Reads a bare word as a term. Most such words are incomplete names of files or
+ * objects, not links. */
 Result<ObjectSpec> object_from_word(const std::string &text)
 {
     Result<ObjectSpec> object = object_from_term(text);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
-        object = Result<ObjectSpec>::bad("a single link of this name is written L(" + text + ")");
+        object = Result<ObjectSpec>::bad("write a single link of this name as L(" + text + ")");
     if (!object)
-        object.error = "'" + text +
-                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
-                       object.error;
+        object.error =
+            "'" + text +
+            "' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: " +
+            object.error;
     return object;
 }
 
@@ -52,7 +53,8 @@ LinkSpec default_link(grrl_property size)
         link.half_length_m = small_half_length_m;
     else if (size == GRRL_PROPERTY_LARGE)
         link.half_length_m = large_half_length_m;
-    link.mass_kg *= link.half_length_m / LinkSpec{}.half_length_m; /* as if cut from one bar */
+    link.mass_kg *=
+        link.half_length_m / LinkSpec{}.half_length_m; /* as if all links were cut from one bar */
     set_feature_range(link);
     return link;
 }
@@ -87,12 +89,13 @@ Result<ObjectSpec> object_from_chain(const std::string &letters)
     ObjectSpec object;
     grrl_graph_clear(&object.truth);
     if (letters.empty())
-        return Result<ObjectSpec>::bad("an empty chain; write one letter R or P for each joint");
+        return Result<ObjectSpec>::bad(
+            "the chain is empty; write one letter R or P for each joint");
     for (size_t i = 0; i < letters.size(); i++) {
         if (letters[i] != 'R' && letters[i] != 'P')
             return Result<ObjectSpec>::bad(
                 at_position({1, static_cast<unsigned>(i + 1)},
-                            std::string("a chain has no letter '") + letters[i] +
+                            std::string("a chain cannot contain '") + letters[i] +
                                 "'; R is a revolute and P a prismatic joint, such as RPRPRPR"));
     }
     if (letters.size() + 1 > GRRL_MAX_LINKS)

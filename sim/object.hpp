@@ -1,5 +1,5 @@
 /*
- * object.hpp: what stands on the table, described before there is any physics.
+ * object.hpp: describes the objects on the table, without physics.
  *
  * object_from_text turns a description into an ObjectSpec:
  *   RPRPRPR                       a serial chain, one letter a joint
@@ -28,15 +28,15 @@ struct LinkSpec {
     double half_width_m = 0.0175;
     double mass_kg = 0.13;
     grrl_property size = 0; /* 0, GRRL_PROPERTY_SMALL or GRRL_PROPERTY_LARGE */
-    bool fixed = false;     /* lb: glued to the table, and neither seen nor touched */
-    int features_min = 8;   /* its number of features is drawn between these two */
+    bool fixed = false;     /* lb: fixed to the table, neither seen nor touched */
+    int features_min = 8;   /* its number of features is drawn from this range */
     int features_max = 14;
 };
 
 /*
- * A joint. At value 0 the two anchors coincide and b is turned by angle_rad against a. The value of
- * a revolute joint (rad) turns b about the anchor, that of a prismatic joint (m) slides b's anchor
- * along the axis.
+ * A joint. At value 0 the two anchors coincide and b is rotated by angle_rad relative to a. The
+ * value of a revolute joint (rad) rotates b about the anchor; that of a prismatic joint (m) moves
+ * b's anchor along the axis.
  */
 struct JointSpec {
     grrl_joint_type type = GRRL_REVOLUTE;
@@ -49,9 +49,9 @@ struct JointSpec {
     double lower = 0.0;
     double upper = 0.0;
     double friction = 0.0;      /* N m or N, Coulomb */
-    double initial_lower = 0.0; /* the value at the start is drawn between these two */
+    double initial_lower = 0.0; /* the initial value is drawn from this range */
     double initial_upper = 0.0;
-    bool given = false; /* a file fixed the geometry: no layout of ours may change it */
+    bool given = false; /* a file fixed the geometry, so the layout must not change it */
 };
 
 struct ObjectSpec {
@@ -63,9 +63,9 @@ struct ObjectSpec {
 /*
  * The defaults of links and joints. A joint moves only if the table holds the part beyond it more
  * firmly than the joint does: one link is held by 0.4 * 0.13 kg * g = 0.5 N, or 3.3 N cm about its
- * end. With these frictions random pushes find out RPRPRPR in about 20 pushes, as in the paper;
- * with 6 N cm and 2 N the joints near the ends hardly ever move. One push at a loop must move at
- * least four joints at once, so that those are looser.
+ * end. With these frictions random pushes discover RPRPRPR in about 20 pushes, as in the paper.
+ * With 6 N cm and 2 N the joints near the ends hardly ever move. One push on a loop must move at
+ * least four joints at once, so joints on loops have less friction.
  */
 constexpr double small_half_length_m = 0.045;
 constexpr double large_half_length_m = 0.085;
@@ -77,28 +77,28 @@ constexpr double prismatic_initial_m = 0.015;
 constexpr double prismatic_friction_n = 0.95;
 constexpr double loop_friction_share = 1.0 / 3.0;
 
-/* A link without a name, of a size, with the features that suit its length. */
+/* An unnamed link of this size, with a number of features that suits its length. */
 LinkSpec default_link(grrl_property size);
 
-/* Sets the range of features by the area of the link: about 11 on a standard one, at least 6. */
+/* Sets the range of features from the link's area: about 11 on a standard link, at least 6. */
 void set_feature_range(LinkSpec &link);
 
 /* A joint without geometry, with the limits and friction of its type. */
 JointSpec default_joint(grrl_joint_type type, int a, int b);
 
-/* n letters R and P are n joints between n + 1 links in a row. */
+/* n letters R and P give n joints between n + 1 links in a row. */
 Result<ObjectSpec> object_from_chain(const std::string &letters);
 
-/* Any term that is a kinematic structure; errors carry line and column. */
+/* Accepts any term that is a kinematic structure; errors carry line and column. */
 Result<ObjectSpec> object_from_term(const std::string &term);
 
 /* A chain, a term, or else the path of a file. */
 Result<ObjectSpec> object_from_text(const std::string &text);
 
 /*
- * Parts of object_from_term, for object_file.cpp: the links and joints of a term with default
- * dimensions and no geometry yet (a prefix such as "file:3:" may be put before its errors by the
- * caller), and then the geometry and the checks of loops.
+ * Parts of object_from_term, for object_file.cpp. The first makes the links and joints of a term
+ * with default dimensions and no geometry; the caller may prefix its errors, for example with
+ * "file:3:". The second adds the geometry and checks the loops.
  */
 struct TermPosition {
     unsigned line = 1;

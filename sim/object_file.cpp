@@ -1,4 +1,4 @@
-/* Reads objects with dimensions, and says which line is wrong. */
+/* Reads objects with dimensions, and reports which line is wrong. */
 #include "object_file.hpp"
 
 #include <cstdlib>
@@ -48,7 +48,8 @@ public:
         for (size_t number = 1; std::getline(stream, line) && error_.empty(); number++)
             statement({number, split(line), line.size() + 1}, line);
         if (error_.empty() && !has_term_)
-            fail(1, 1, "there is no term; the first statement must be 'term R(l1, l2)' or similar");
+            fail(1, 1,
+                 "the file has no term; the first statement must be 'term R(l1, l2)' or similar");
         if (error_.empty()) {
             std::string problem = finish_object(object_);
             if (!problem.empty())
@@ -84,7 +85,7 @@ private:
     void term(const Line &line, const std::string &text)
     {
         if (has_term_)
-            return fail(line.number, line.words[0].column, "a second term; a file has one");
+            return fail(line.number, line.words[0].column, "a second term; a file has only one");
         if (line.words.size() < 2)
             return fail(line.number, line.end_column, "expected a term such as R(l1, l2)");
         size_t start = line.words[1].column - 1;

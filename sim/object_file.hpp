@@ -24,7 +24,7 @@ namespace grrl_sim
 /* Errors start with path:line:column. */
 Result<ObjectSpec> object_from_file(const std::string &path);
 
-/* The same from a text; `path` is for the errors only. */
+/* Reads from a text instead; `path` appears only in errors. */
 Result<ObjectSpec> object_from_file_text(const std::string &text, const std::string &path);
 
 } // namespace grrl_sim

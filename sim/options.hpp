@@ -19,8 +19,8 @@ struct Options {
     TrackerParams tracker;
     bool real_time = false;
     bool quiet = false;
-    double agent_timeout_s = 0.0; /* 0: wait for ever */
-    std::string log;              /* empty: none, like the next two */
+    double agent_timeout_s = 0.0; /* 0: wait forever */
+    std::string log;              /* empty: none, as for the next two */
     std::string results;
     std::string lcm_url;
 };

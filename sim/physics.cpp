@@ -50,7 +50,7 @@ size_t index(int i)
     return static_cast<size_t>(i);
 }
 
-/* Links that lie across one another at the start are on different levels and stay so. */
+/* Links that cross one another at the start are on different levels and stay there. */
 class Levels : public b2ContactFilter
 {
 public:
@@ -124,7 +124,7 @@ void Physics::Bodies::add_joint(const JointSpec &joint)
     b2Body *a = links[index(joint.a)];
     b2Body *b = links[index(joint.b)];
     double turn = static_cast<double>(b->GetAngle() - a->GetAngle());
-    /* Box2D does not wrap angles: the turns between a and b belong to the reference. */
+    /* Box2D does not wrap angles, so whole turns between a and b belong to the reference. */
     double reference = turn - wrap_angle(turn - joint.angle_rad);
     if (joint.type == GRRL_REVOLUTE) {
         b2RevoluteJointDef def;
@@ -175,7 +175,7 @@ Physics::Physics(const ObjectSpec &object, const std::vector<Pose> &poses, doubl
     bodies_->table_friction = table_friction;
     bodies_->finger_radius_m = finger_radius_m;
     bodies_->world.SetAllowSleeping(false);
-    bodies_->world.SetContinuousPhysics(false); /* nothing here is fast or thin */
+    bodies_->world.SetContinuousPhysics(false); /* no body here is fast or thin */
     b2BodyDef table;
     bodies_->table = bodies_->world.CreateBody(&table);
     for (size_t i = 0; i < object.links.size(); i++)
@@ -238,7 +238,7 @@ void Physics::lower_finger(Vec2 at, Vec2 along, double speed_m_s, double force_n
 void Physics::lift_finger()
 {
     if (bodies_->finger != nullptr)
-        bodies_->world.DestroyBody(bodies_->finger); /* and its guide with it */
+        bodies_->world.DestroyBody(bodies_->finger); /* this also destroys its guide */
     bodies_->finger = nullptr;
     bodies_->guide = nullptr;
 }

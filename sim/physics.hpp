@@ -28,13 +28,13 @@ public:
     Physics(const Physics &) = delete;
     Physics &operator=(const Physics &) = delete;
 
-    /* Links of the same object that lay across one another there, do so here. */
+    /* Links of the same object that cross one another there may cross here. */
     void keep_levels(const Physics &other);
 
-    /* Multiplies the friction of link i against the table and in joint j. */
+    /* Multiplies the friction of link i against the table and that in joint j. */
     void scale_friction(const std::vector<double> &links, const std::vector<double> &joints);
 
-    /* The finger on a straight guide, driven at a speed by at most a force. */
+    /* The finger on a straight guide, driven at a speed with limited force. */
     void lower_finger(Vec2 at, Vec2 along, double speed_m_s, double force_n);
     void lift_finger();
     bool finger_touches() const;
@@ -43,13 +43,13 @@ public:
 
     void step();
 
-    /* The greatest speed of any link's centre or end, m/s. */
+    /* The highest speed of any link's centre or end, m/s. */
     double greatest_speed() const;
     void stop_links();
 
     std::vector<Pose> poses() const;
     double joint_value(int joint) const;
-    double loop_gap_m(int joint) const; /* by how much the joint's parts have come apart */
+    double loop_gap_m(int joint) const; /* how far the joint's parts have separated */
     uint64_t hash() const;
 
 private:

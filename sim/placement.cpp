@@ -1,4 +1,4 @@
-/* Draws joint values and a place until nothing overlaps. */
+/* Draws joint values and a place until no links overlap. */
 #include "placement.hpp"
 
 #include "kinematics.hpp"
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    /* The last attempt is the middle of all ranges, which is known to close. */
+    /* The last attempt uses the middle of all ranges, which is known to close. */
     std::vector<double> draw_values(int attempt)
     {
         double bend =
@@ -144,7 +144,7 @@ private:
         return true;
     }
 
-    /* Centred if it is alone, else to the right of the others, over the edge if it must be. */
+    /* Centred if it is alone, else to the right of the others, even over the edge. */
     void place_beside(int component)
     {
         Box box = box_of(component, false);

@@ -11,9 +11,10 @@ namespace grrl_sim
 {
 
 /*
- * Poses of all links: joint values within their initial ranges, loops closed, no link on another
- * and everything on the table. A structure too crowded or too long for that is bent further, up to
- * its limits; what still does not fit may lie across itself or stick out.
+ * Draws poses of all links: joint values within their initial ranges, loops closed, no links
+ * overlapping, everything on the table. If a structure is too crowded or too long for that, its
+ * joints may bend up to their limits. If it still does not fit, it may overlap itself or extend
+ * over the edge.
  */
 std::vector<Pose> random_poses(const ObjectSpec &object, Vec2 table_m, Random &random);
 

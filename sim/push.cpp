@@ -1,4 +1,4 @@
-/* Checks a push, and names how it ended. */
+/* Checks a push, and classifies how it ended. */
 #include "push.hpp"
 
 #include <sstream>

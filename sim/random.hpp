@@ -1,7 +1,7 @@
 /*
- * random.hpp: the library's random numbers with the distributions a simulation needs.
+ * random.hpp: the library's random numbers, with the distributions that a simulation needs.
  *
- * One stream for each purpose, so that drawing more of one does not shift another.
+ * Each purpose has its own stream, so that drawing more numbers for one does not shift another.
  */
 #ifndef GRRL_SIM_RANDOM_HPP
 #define GRRL_SIM_RANDOM_HPP
@@ -34,8 +34,8 @@ public:
         return static_cast<int>(grrl_random_below(&state_, static_cast<uint32_t>(count)));
     }
 
-    /* Mean 0, variance 1: twelve uniforms, which unlike Box-Muller are the same on every machine.
-     */
+    /* Mean 0, variance 1: a sum of twelve uniforms. Unlike Box-Muller it is the same on every
+     * machine. */
     double normal()
     {
         double sum = -6.0;
@@ -54,7 +54,7 @@ private:
     grrl_random state_;
 };
 
-/* The n-th trial of a seed has its own object pose, noise and friction. */
+/* Each trial of a seed has its own object pose, noise and friction. */
 inline uint64_t trial_seed(uint64_t seed, int32_t trial)
 {
     grrl_random random;

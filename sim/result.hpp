@@ -11,7 +11,7 @@ namespace grrl_sim
 
 template <typename T> struct Result {
     std::optional<T> value;
-    std::string error; /* empty exactly if there is a value */
+    std::string error; /* empty if and only if there is a value */
 
     explicit operator bool() const { return value.has_value(); }
 

@@ -1,4 +1,4 @@
-/* The graph of an object, and of a model on the wire. */
+/* The graph of an object, and of a model message. */
 #include "structure.hpp"
 
 namespace grrl_sim

@@ -1,4 +1,4 @@
-/* structure.hpp: what the supervisor compares: the truth, and a model on the wire. */
+/* structure.hpp: the structures that the supervisor compares: the truth and a model message. */
 #ifndef GRRL_SIM_STRUCTURE_HPP
 #define GRRL_SIM_STRUCTURE_HPP
 
@@ -8,10 +8,10 @@
 namespace grrl_sim
 {
 
-/* The structure to be found: the truth without what is glued to the table and never seen. */
+/* The structure to be found: the truth without links fixed to the table, which are never seen. */
 grrl_graph visible_structure(const ObjectSpec &object);
 
-/* The structure a model claims. False if it is none, or larger than a graph can be. */
+/* The structure of a model. False if it is not valid, or exceeds a graph's capacity. */
 bool structure_of(const grrl_model_t &model, grrl_graph &graph);
 
 } // namespace grrl_sim

@@ -45,19 +45,19 @@ std::string verdict_text(const Verdict &verdict)
                              : "the right links and joints, joined differently";
 }
 
-Verdict Supervisor::judge(const grrl_graph &believed) const
+Verdict Supervisor::judge(const grrl_graph &estimated) const
 {
     Verdict verdict;
-    verdict.missing_links = truth_.n - believed.n;
+    verdict.missing_links = truth_.n - estimated.n;
     verdict.missing_revolute =
-        joints_of_type(truth_, GRRL_REVOLUTE) - joints_of_type(believed, GRRL_REVOLUTE);
+        joints_of_type(truth_, GRRL_REVOLUTE) - joints_of_type(estimated, GRRL_REVOLUTE);
     verdict.missing_prismatic =
-        joints_of_type(truth_, GRRL_PRISMATIC) - joints_of_type(believed, GRRL_PRISMATIC);
+        joints_of_type(truth_, GRRL_PRISMATIC) - joints_of_type(estimated, GRRL_PRISMATIC);
     if (verdict.missing_links != 0 || verdict.missing_revolute != 0 ||
         verdict.missing_prismatic != 0)
         return verdict;
     uint8_t map[GRRL_MAX_LINKS];
-    grrl_status status = grrl_match_find(GRRL_MATCH_ISOMORPHISM, &truth_, &believed,
+    grrl_status status = grrl_match_find(GRRL_MATCH_ISOMORPHISM, &truth_, &estimated,
                                          GRRL_NO_PROPERTIES, GRRL_MATCH_BUDGET, map);
     verdict.correct = status == GRRL_OK;
     verdict.undecided = status == GRRL_ERR_UNDECIDED;

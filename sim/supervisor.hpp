@@ -1,6 +1,6 @@
 /*
- * supervisor.hpp: knows the true structure and ends a trial when a robot has found it (paper,
- * section VII). It compares links and joints only, not the properties of links.
+ * supervisor.hpp: knows the true structure and ends a trial when the robot has found it (paper,
+ * section VII). It compares only links and joints, not link properties.
  */
 #ifndef GRRL_SIM_SUPERVISOR_HPP
 #define GRRL_SIM_SUPERVISOR_HPP
@@ -12,16 +12,17 @@
 namespace grrl_sim
 {
 
-/* How a believed structure differs from the true one: positive is missing, negative too many. */
+/* The difference between the estimated and the true structure: positive is missing, negative too
+ * many. */
 struct Verdict {
     bool correct = false;   /* isomorphic to the truth */
-    bool undecided = false; /* the search budget ran out: not correct, as far as is known */
+    bool undecided = false; /* the search budget ran out; treated as not correct */
     int missing_links = 0;
     int missing_revolute = 0;
     int missing_prismatic = 0;
 };
 
-/* "correct", or such as "2 links missing, 1 prismatic joint too many". */
+/* "correct", or for example "2 links missing, 1 prismatic joint too many". */
 std::string verdict_text(const Verdict &verdict);
 
 class Supervisor
@@ -29,7 +30,7 @@ class Supervisor
 public:
     explicit Supervisor(const grrl_graph &truth) : truth_(truth) {}
 
-    Verdict judge(const grrl_graph &believed) const;
+    Verdict judge(const grrl_graph &estimated) const;
 
 private:
     grrl_graph truth_;

@@ -8,11 +8,11 @@ namespace
 {
 
 constexpr int placing_attempts = 60;
-constexpr double edge_m = 0.002;             /* features keep off the edge of a link .. */
-constexpr double background_margin_m = 0.01; /* .. and background features off the object */
+constexpr double edge_m = 0.002;             /* distance of features from the edge of a link */
+constexpr double background_margin_m = 0.01; /* distance of background features from the object */
 constexpr double background_distance_m = 0.05;
 
-/* A point at least `apart` from the others if one is found, the apartest one tried if not. */
+/* Draws a point at least `apart` from the others; if it finds none, the most distant one tried. */
 template <typename Draw, typename Apart> Vec2 spread_point(Draw draw, Apart distance, double apart)
 {
     Vec2 best;
@@ -42,7 +42,7 @@ Tracker::Tracker(const ObjectSpec &object, const TrackerParams &params, Vec2 tab
         total += counts.back();
     }
     for (size_t i = 0; i < links_.size(); i++) {
-        if (total > GRRL_MAX_FEATURES) /* what one tracker follows at a time */
+        if (total > GRRL_MAX_FEATURES) /* the most that one tracker follows at a time */
             counts[i] = counts[i] * GRRL_MAX_FEATURES / total;
         place_on_link(static_cast<int>(i), counts[i], random);
     }

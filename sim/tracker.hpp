@@ -1,8 +1,8 @@
 /*
- * tracker.hpp: the camera. Feature points on the links and on the table, seen with noise.
+ * tracker.hpp: the camera: noisy feature points on the links and the table.
  *
- * A frame is all a robot gets to see. It holds no body, link or joint: the ids are a random
- * permutation over all features, and a frame lists what is visible by ascending id.
+ * A frame is all that a robot sees. It contains no body, link or joint: the ids are a random
+ * permutation over all features, and a frame lists the visible ones by ascending id.
  */
 #ifndef GRRL_SIM_TRACKER_HPP
 #define GRRL_SIM_TRACKER_HPP
@@ -18,11 +18,11 @@ namespace grrl_sim
 
 struct TrackerParams {
     double noise_sigma_m = 0.0007;    /* of each coordinate in each frame, >= 0 */
-    double dropout_probability = 0.0; /* of a feature to be missing in a frame, 0 .. 1 */
-    double outlier_probability = 0.0; /* of a feature to be elsewhere in a frame, 0 .. 1 */
-    double outlier_reach_m = 0.05;    /* how far it then jumps at most */
-    int background_features = 25;     /* fewer if GRRL_MAX_FEATURES does not hold them */
-    double feature_distance_m = 0.01; /* least distance on a link; gives way on a crowded one */
+    double dropout_probability = 0.0; /* that a feature is missing in a frame, 0 .. 1 */
+    double outlier_probability = 0.0; /* that a feature is displaced in a frame, 0 .. 1 */
+    double outlier_reach_m = 0.05;    /* largest displacement of an outlier */
+    int background_features = 25;     /* fewer if GRRL_MAX_FEATURES does not suffice */
+    double feature_distance_m = 0.01; /* minimum distance on a link; reduced on a crowded one */
 };
 
 struct TrackedFeature {
@@ -40,14 +40,16 @@ struct Frame {
 class Tracker
 {
 public:
-    /* Puts features on the links and, where no link is, on the table (centred on the origin). */
+    /* Places features on the links, and on the table (centred on the origin) where there is no
+     * link. */
     Tracker(const ObjectSpec &object, const TrackerParams &params, Vec2 table_m,
             const std::vector<Pose> &poses, Random &random);
 
-    /* What is visible with the links at these poses. */
+    /* Fills in what is visible with the links at these poses. */
     void observe(const std::vector<Pose> &poses, Random &noise, Frame &frame) const;
 
-    /* For tests and pictures: how many there are, whose each is (-1: the table's), and where. */
+    /* For tests and pictures: the number of features, the link of each (-1: the table), and
+     * positions. */
     int feature_count() const { return static_cast<int>(features_.size()); }
     int true_link(uint32_t id) const { return features_[id].link; }
     Vec2 true_position(uint32_t id, const std::vector<Pose> &poses) const;

@@ -36,13 +36,13 @@ struct World::Impl {
     Tracker tracker;
     Phase phase = Phase::REST;
     uint64_t frames = 0;
-    std::vector<double> least; /* value of each joint so far */
+    std::vector<double> least; /* smallest value of each joint so far */
     std::vector<double> greatest;
     PushCommand command;
     PushResult result;
     double line_m = 0.0; /* from where the finger came down to the end */
     double contact_m = 0.0;
-    double progress_m = 0.0; /* where it last got ahead, and when */
+    double progress_m = 0.0; /* travel and time of the last progress */
     double progress_s = 0.0;
     double settling_s = 0.0;
 
@@ -140,7 +140,7 @@ void World::Impl::check_finger()
     }
     if (result.touched)
         result.travelled_m = travel - contact_m;
-    /* Progress is a quarter of what the commanded speed would give, at most 0.5 mm. */
+    /* Progress means a quarter of what the commanded speed would give, at most 0.5 mm. */
     double ahead = std::min(0.0005, 0.25 * command.speed_m_s * blocked_after_s);
     if (travel > progress_m + ahead) {
         progress_m = travel;
@@ -231,7 +231,7 @@ World &World::operator=(World &&) noexcept = default;
 std::string World::begin_push(const PushCommand &command)
 {
     if (impl_->phase != Phase::REST)
-        return "a push is going on; wait for its result";
+        return "a push is in progress; wait for its result";
     std::string problem = check_push(command, impl_->params.table_m);
     if (!problem.empty())
         return problem;

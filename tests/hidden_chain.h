@@ -1,6 +1,6 @@
 /*
- * hidden_chain.h: a world in place of perception, whose functions it defines, so that the library's
- * own are not linked. Include in one file, after cmocka.h.
+ * hidden_chain.h: a fake world that replaces perception. It defines perception's functions, so that
+ * the library's own are not linked. Include it in one file, after cmocka.h.
  */
 #ifndef GRRL_HIDDEN_CHAIN_H
 #define GRRL_HIDDEN_CHAIN_H
@@ -10,8 +10,8 @@
 #include "grrl/perception/perception.h"
 
 /*
- * A chain of links whose joints are hidden at first. Pushing a body that hides joints across
- * (direction 2) reveals its last one; any other push is in vain.
+ * A chain of links whose joints are hidden at first. A push across a body with hidden joints
+ * (direction 2) reveals its last joint; any other push reveals nothing.
  */
 static struct {
     const char *joints; /* of the whole chain */

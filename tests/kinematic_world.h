@@ -1,6 +1,6 @@
 /*
- * kinematic_world.h: a world without physics for the tests of perception: links in the plane whose
- * joints are moved by hand, seen as noisy points.
+ * kinematic_world.h: a world without physics, for the tests of perception. Links lie in a plane,
+ * the test moves their joints, and perception sees noisy points.
  */
 #ifndef GRRL_TEST_KINEMATIC_WORLD_H
 #define GRRL_TEST_KINEMATIC_WORLD_H
@@ -18,7 +18,7 @@ struct kinematic_world {
     float length_m;
     int n_links;
     int parent[WORLD_LINKS]; /* -1: a root */
-    char joint[WORLD_LINKS]; /* 'R' or 'P' with the parent, 0 for a root */
+    char joint[WORLD_LINKS]; /* joint with the parent, 'R' or 'P'; 0 for a root */
     float q[WORLD_LINKS];
     float anchor_m[WORLD_LINKS]; /* where on the parent's axis the link is joined */
     struct grrl_pose root[WORLD_LINKS];
@@ -64,8 +64,8 @@ static inline int world_add_point(struct kinematic_world *w, int body, float x, 
     return w->n_points++;
 }
 
-/* A link of length_m, its features 8 to 13 at random; joined at its near end to the parent's far
- * end unless anchor_m is changed. */
+/* Adds a link of length_m with 8 to 13 random features. Its near end is attached to the parent's
+ * far end unless anchor_m is changed. */
 static inline int world_add_link(struct kinematic_world *w, int parent, char joint)
 {
     int link = w->n_links++;
@@ -95,7 +95,7 @@ static inline void world_add_background(struct kinematic_world *w, int n)
         (void)world_add_point(w, -1, world_uniform(w, -1.0f, 1.0f), world_uniform(w, -0.8f, 0.8f));
 }
 
-/* Ids without a hint of the body. */
+/* Shuffles ids, so that they say nothing about the body. */
 static inline void world_shuffle_ids(struct kinematic_world *w)
 {
     for (int i = w->n_points - 1; i > 0; i--) {
@@ -156,7 +156,7 @@ static inline void world_rest(struct kinematic_world *w, struct grrl_perception 
     }
 }
 
-/* Moves joints and root by the given amounts in 120 frames, then rests. */
+/* Moves joints and root by these amounts in 120 frames, then rests. */
 static inline void world_move(struct kinematic_world *w, struct grrl_perception *p, const float *dq,
                               struct grrl_vec2 shift, float turn)
 {

@@ -1,4 +1,4 @@
-/* memory_file.h: a file in memory, for what saves and loads through grrl_io. */
+/* memory_file.h: a file in memory, for code that saves and loads through grrl_io. */
 #ifndef GRRL_MEMORY_FILE_H
 #define GRRL_MEMORY_FILE_H
 
@@ -12,8 +12,8 @@ enum { MEMORY_FILE_BYTES = 1 << 16 };
 struct memory_file {
     uint8_t bytes[MEMORY_FILE_BYTES];
     size_t size;
-    size_t at;      /* where reading goes on */
-    int calls_left; /* calls before one fails; negative: none does */
+    size_t at;      /* position of the next read */
+    int calls_left; /* calls left before one fails; negative: none fails */
 };
 
 static inline int memory_file_fails(struct memory_file *file)

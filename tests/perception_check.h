@@ -1,6 +1,6 @@
 /*
- * perception_check.h: a world, what perception makes of it, and what is right about that. Included
- * after cmocka.h by the tests of perception.
+ * perception_check.h: a world, perception's model of it, and checks of that model. Include it after
+ * cmocka.h in the tests of perception.
  */
 #ifndef GRRL_TEST_PERCEPTION_CHECK_H
 #define GRRL_TEST_PERCEPTION_CHECK_H
@@ -32,7 +32,7 @@ static inline int true_link(int32_t id)
     return -2;
 }
 
-/* The true link most of a body's features are on. */
+/* The true link that most of a body's features are on. */
 static inline int link_of_body(const struct grrl_model *model, int body)
 {
     int votes[WORLD_LINKS] = {0};
@@ -47,7 +47,7 @@ static inline int link_of_body(const struct grrl_model *model, int body)
     return best;
 }
 
-/* The body most of a link's features are in; links that have not moved apart share one. */
+/* The body that holds most of a link's features; links that have not moved apart share one. */
 static inline int body_of_link(const struct grrl_model *model, int link)
 {
     int votes[GRRL_MAX_LINKS] = {0};
@@ -60,7 +60,7 @@ static inline int body_of_link(const struct grrl_model *model, int link)
     return best;
 }
 
-/* Features that lie in a body of another link than their own. */
+/* Counts features in a body of another link than their own. */
 static inline int misplaced(const struct grrl_model *model)
 {
     int n = 0;
@@ -70,8 +70,8 @@ static inline int misplaced(const struct grrl_model *model)
     return n;
 }
 
-/* Features that are not in the body most of their link's features are in. Links that have not moved
- * against one another may share a body. */
+/* Counts features outside the body that holds most of their link's features. Links that have not
+ * moved relative to one another may share a body. */
 static inline int torn_off(const struct grrl_model *model)
 {
     int count[WORLD_LINKS][GRRL_MAX_LINKS] = {{0}};
@@ -92,7 +92,8 @@ static inline int torn_off(const struct grrl_model *model)
     return n;
 }
 
-/* Every body another link, every joint between neighbours in the chain and of the right type. */
+/* Whether every body is another link, and every joint is between neighbours in the chain and of the
+ * right type. */
 static inline bool is_the_chain(const struct grrl_model *model)
 {
     if (model->n_bodies != world.n_links || model->n_joints != world.n_links - 1)

@@ -1,4 +1,4 @@
-/* policy_memory.h: memory for any policy of the library, in tests. */
+/* policy_memory.h: memory for any policy of the library, for tests. */
 #ifndef GRRL_POLICY_MEMORY_H
 #define GRRL_POLICY_MEMORY_H
 
@@ -8,7 +8,7 @@
 #include "grrl/learner/relational_q/paper_policy.h"
 #include "grrl/policies.h"
 
-/* For as many entries; the policy that was made there last may be looked into. */
+/* Memory for this many entries; tests may inspect the policy that was last made there. */
 #define POLICY_MEMORY(capacity)                                                                    \
     union {                                                                                        \
         max_align_t aligned;                                                                       \

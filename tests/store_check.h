@@ -1,7 +1,4 @@
-/*
- * store_check.h: what must hold of every experience store, whatever was done to it.
- * Include after cmocka.h.
- */
+/* store_check.h: the invariants of every experience store. Include after cmocka.h. */
 #ifndef GRRL_STORE_CHECK_H
 #define GRRL_STORE_CHECK_H
 

@@ -1,5 +1,5 @@
 /*
- * support.h: what the tests of terms and graphs share.
+ * support.h: shared by the tests of terms and graphs.
  *
  * Random tests take their seed from the environment variable GRRL_TEST_SEED, or a fixed one, and
  * print it at the start.
@@ -54,7 +54,8 @@ static inline void support_assert_prints(const struct grrl_term_store *store, gr
 
 static inline void support_shuffle(struct grrl_random *random, uint8_t *order, uint8_t n)
 {
-    for (uint8_t i = 0; i < n; i++) { /* i goes to a random place, who stood there to the end */
+    for (uint8_t i = 0; i < n;
+         i++) { /* i goes to a random place, and the item there goes to the end */
         uint8_t j = (uint8_t)grrl_random_below(random, i + 1u);
         if (j != i)
             order[i] = order[j];
@@ -63,8 +64,9 @@ static inline void support_shuffle(struct grrl_random *random, uint8_t *order, u
 }
 
 /*
- * A random graph of n links: a forest in which each link hangs on an earlier one with probability
- * connect / 8, plus `loops` attempts at a further joint. Labels have 0 .. n_atoms at place 0.
+ * A random graph of n links: a forest in which each link is joined to an earlier one with
+ * probability connect / 8, plus `loops` attempts to add a joint. Labels have 0 .. n_atoms at place
+ * 0.
  */
 static inline struct grrl_graph support_graph(struct grrl_random *random, uint8_t n,
                                               uint32_t connect, uint32_t loops, uint32_t n_atoms)
@@ -85,7 +87,7 @@ static inline struct grrl_graph support_graph(struct grrl_random *random, uint8_
         enum grrl_status status =
             grrl_graph_add_joint(&graph, (uint8_t)grrl_random_below(random, n),
                                  (uint8_t)grrl_random_below(random, n), type);
-        (void)status; /* a pair that is joined already stays as it is */
+        (void)status; /* a pair that already has a joint stays as it is */
     }
     return graph;
 }

@@ -62,7 +62,7 @@ link blade2 l
 joint R blade1 blade2' graph 'D(lb, R(blade1, L(l, blade2)))'
 expect 1 'grrl-term: link l1 is joined to itself' graph 'R(l1, l1)'
 expect 1 'grrl-term: link tip is joined twice to blade1' graph 'R(blade1, tip) & P(tip, blade1)'
-expect 1 'grrl-term: an action is no structure' graph 'A(l1, 90)'
+expect 1 'grrl-term: an action is not a structure' graph 'A(l1, 90)'
 
 # canonical: the wooden toy, written in two ways
 toy='R(v2, R(v4, P(v3, v1)))
@@ -106,11 +106,11 @@ expect 2 "grrl-term: the command is parse, graph, canonical or match
 $try"
 expect 2 "grrl-term: the command is parse, graph, canonical or match
 $try" pares l1
-expect 2 "grrl-term: --dot goes with graph
+expect 2 "grrl-term: --dot requires graph
 $try" parse --dot l1
-expect 2 "grrl-term: --ignore-properties goes with canonical
+expect 2 "grrl-term: --ignore-properties requires canonical
 $try" graph l1 --ignore-properties
-expect 2 "grrl-term: --all goes with match
+expect 2 "grrl-term: --all requires match
 $try" --all canonical l1
 expect 2 "grrl-term: too few terms
 $try" match l1

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# Sourced by the commands in this folder: where the project lies, messages, set-up, building.
-# Exit status of every command: 0 fine, 1 something failed, 2 wrong command line.
+# Sourced by the commands in this folder: the project's location, messages, set-up, building.
+# Exit status of every command: 0 success, 1 something failed, 2 wrong command line.
 set -euo pipefail
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 NAME=${0##*/}
@@ -36,6 +36,6 @@ build() {
     if ! (cd "$ROOT" && cmake --preset "$preset" &&
         cmake --build --preset "$preset" "${targets[@]}") >"$log" 2>&1; then
         tail -n 40 "$log" >&2
-        fail "the build failed; all its output is in $log"
+        fail "the build failed; its output is in $log"
     fi
 }

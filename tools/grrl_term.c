@@ -1,8 +1,8 @@
 /*
- * grrl-term: relational terms at the command line, on the library's term, graph, match and
+ * grrl-term: relational terms on the command line, using the library's term, graph, match and
  * canonical modules.
  *
- * Exit status: 0 fine (match: a match), 1 no match, or an error in a term, 2 wrong usage.
+ * Exit status: 0 success (match: a match), 1 no match, or an error in a term, 2 wrong usage.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 enum { EXIT_FINE = 0, EXIT_NO = 1 };
 enum { MAX_TEXT_BYTES = 65536, MAX_NODES = 16384 };
 
-/* Far more than the search of any structure of 32 links that is not made to be hard. */
+/* Far more than any structure of 32 links needs, unless it was designed to be hard. */
 enum { MATCH_BUDGET = 10000000 };
 
 static const struct grrl_program program = {
@@ -42,7 +42,7 @@ static const struct grrl_program program = {
              "  R(x, y)  P(x, y)  D(x, y)    revolute, prismatic, disconnected\n"
              "  x & y                        and\n"
              "  A(x, 45)                     an action: push link x from 45 degrees\n\n"
-             "Exit status: 0 fine, 1 no match or an error in a term, 2 wrong usage.\n",
+             "Exit status: 0 success, 1 no match or an error in a term, 2 wrong usage.\n",
     .most_arguments = 3,
     .arguments = "one term too many",
 };
@@ -57,7 +57,7 @@ struct options {
     char **terms;
 };
 
-/* A term of the command line as a structure. */
+/* A term from the command line as a structure. */
 struct structure {
     struct grrl_graph graph;
     struct grrl_name names[GRRL_MAX_LINKS];
@@ -67,7 +67,7 @@ struct structure {
 
 /* --- reading ---------------------------------------------------------------------------------- */
 
-/* The line with the error and a caret under the character; control characters as '?'. */
+/* Prints the line with the error and a caret under the character; control characters as '?'. */
 static void show_error(const char *text, size_t length, const struct grrl_term_error *error)
 {
     fprintf(stderr, "grrl-term: %u:%u: %s\n", (unsigned)error->line, (unsigned)error->column,
@@ -91,16 +91,16 @@ static bool read_standard_input(char *buffer, size_t *length)
 {
     *length = fread(buffer, 1, MAX_TEXT_BYTES, stdin);
     if (ferror(stdin)) {
-        fputs("grrl-term: standard input cannot be read\n", stderr);
+        fputs("grrl-term: cannot read standard input\n", stderr);
         return false;
     }
     if (*length == MAX_TEXT_BYTES) {
-        fprintf(stderr, "grrl-term: a term on standard input is shorter than %d bytes\n",
+        fprintf(stderr, "grrl-term: a term on standard input must be shorter than %d bytes\n",
                 MAX_TEXT_BYTES);
         return false;
     }
     while (*length > 0 && buffer[*length - 1] == '\n')
-        --*length; /* so that an error at the end is shown at the end of the last line */
+        --*length; /* so that an error at the end is shown in the last line */
     return true;
 }
 
@@ -144,7 +144,7 @@ static int fail(enum grrl_status status)
 
 static int write_term(grrl_term term)
 {
-    /* a node takes at most the properties, a name and punctuation */
+    /* a node needs at most its properties, a name and punctuation */
     static char text[MAX_NODES * 8 + MAX_TEXT_BYTES * 2];
     enum grrl_status status = grrl_term_print(&store, term, sizeof text, text, NULL);
     if (status != GRRL_OK)
@@ -159,7 +159,7 @@ static void write_name(struct grrl_name name)
     fputs(grrl_term_name_text(&store, name, text), stdout);
 }
 
-/* Each property with a space before it, up to the last that is there. */
+/* Writes each property after a space, up to the last one that exists. */
 static void write_properties(grrl_label label)
 {
     if (label == GRRL_LABEL_BACKGROUND)
@@ -183,7 +183,7 @@ static int run_parse(const struct options *options)
     return read_term(options->terms[0], &term) ? write_term(term) : EXIT_NO;
 }
 
-/* In quotes, as a link may be called node or graph. */
+/* Quoted, because a link may be named node or graph. */
 static void write_dot_name(struct grrl_name name)
 {
     putchar('"');
@@ -278,7 +278,7 @@ static grrl_label keep_places(int n)
     return n >= 8 ? GRRL_ALL_PROPERTIES : (UINT64_C(1) << (8 * n)) - 1u;
 }
 
-/* The links of A with those of B; the pattern of the search is A unless swapped. */
+/* Writes which link of A corresponds to which of B; the search's pattern is A unless swapped. */
 static void write_mapping(const struct structure *a, const struct structure *b, const uint8_t *map,
                           bool swapped)
 {
@@ -297,7 +297,7 @@ struct attempt {
     const char *result;
 };
 
-/* Tries one way of matching with the first n_kept of n_places properties. */
+/* Tries one kind of match with the first n_kept of n_places properties. */
 static enum grrl_status try_match(const struct attempt *attempt, const struct structure *a,
                                   const struct structure *b, int n_kept, int n_places, bool all)
 {
@@ -336,7 +336,7 @@ static int run_match(const struct options *options)
     int places_a = count_places(&a.graph);
     int places_b = count_places(&b.graph);
     int n_places = places_a > places_b ? places_a : places_b;
-    /* all of isomorphism before any of monomorphism: a whole match is the closer one */
+    /* all isomorphisms before any monomorphism: a complete match is closer */
     for (size_t first = 0; first < 2; first++) {
         for (int n_kept = n_places; n_kept >= 0; n_kept--) {
             for (size_t i = first; i <= 2 * first; i++) {
@@ -376,18 +376,18 @@ static const struct command *find_command(const char *name)
     return NULL;
 }
 
-/* What is wrong about the command, its options and its terms, or NULL. */
+/* The error in the command, its options or its terms, or NULL. */
 static const char *wrong_usage(const struct command *command, const struct options *options,
                                int n_terms)
 {
     if (command == NULL)
         return "the command is parse, graph, canonical or match";
     if (options->dot && command->run != run_graph)
-        return "--dot goes with graph";
+        return "--dot requires graph";
     if (options->ignore_properties && command->run != run_canonical)
-        return "--ignore-properties goes with canonical";
+        return "--ignore-properties requires canonical";
     if (options->all && command->run != run_match)
-        return "--all goes with match";
+        return "--all requires match";
     if (n_terms != command->n_terms)
         return n_terms < command->n_terms ? "too few terms" : "one term too many";
     if (n_terms == 2 && strcmp(options->terms[0], "-") == 0 && strcmp(options->terms[1], "-") == 0)
@@ -417,7 +417,7 @@ int main(int argc, char **argv)
     grrl_term_store_init(&store, nodes, MAX_NODES);
     int result = command->run(&options);
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        fputs("grrl-term: standard output cannot be written\n", stderr);
+        fputs("grrl-term: cannot write standard output\n", stderr);
         return EXIT_NO;
     }
     return result;

@@ -1,4 +1,4 @@
-/* policies.c: the table of all policies. Whoever refers to it links all of them. */
+/* policies.c: the table of all policies. A program that refers to it links all of them. */
 #include "grrl/policies.h"
 
 #include <string.h>
@@ -7,10 +7,10 @@
 #include "grrl/learner/learner.h"
 #include "grrl/learner/relational_q/paper_policy.h"
 
-/* An agent of 100 entries fits a quarter of a megabyte (checked for the default capacities). */
+/* An agent of 100 entries fits in 256 KiB (checked for the default capacities). */
 #if GRRL_MAX_LINKS <= 16 && GRRL_MAX_FEATURES <= 192 && GRRL_MAX_KEYFRAMES <= 48
-_Static_assert(sizeof(struct grrl_learner) + GRRL_PAPER_POLICY_BYTES(100) <= 256 * 1024 &&
-                   sizeof(struct grrl_learner) + GRRL_LEARN_POLICY_BYTES(100) <= 256 * 1024,
+_Static_assert(sizeof(struct grrl_learner) + GRRL_PAPER_POLICY_BYTES(100) <= (size_t)256 * 1024 &&
+                   sizeof(struct grrl_learner) + GRRL_LEARN_POLICY_BYTES(100) <= (size_t)256 * 1024,
                "an agent of 100 entries in 256 KiB");
 #endif
 

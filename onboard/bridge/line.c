@@ -1,4 +1,4 @@
-/* Sends a request, and sends it again until the answer arrives. */
+/* Sends a request, and resends it until the answer arrives. */
 #define _DEFAULT_SOURCE /* cfmakeraw */
 
 #include "line.h"
@@ -15,8 +15,8 @@
 #include <time.h>
 #include <unistd.h>
 
-/* A request is asked again after this long, and then after twice as long each time; perceiving
- * takes an emulated controller a second or more. */
+/* A request is resent after this time, and then after twice as long each time. Perceiving takes an
+ * emulated controller a second or more. */
 enum { RESEND_MS = 300, LONGEST_RESEND_MS = 5000, SILENCE_MS = 30000, RETRY_MS = 50 };
 
 static bool fail(struct bridge_line *line, const char *what)
@@ -98,7 +98,7 @@ void bridge_line_close(struct bridge_line *line)
     line->fd = -1;
 }
 
-/* A peer that is gone is an error here and no signal: the caller ignores SIGPIPE. */
+/* A closed connection must be an error here, not a signal: the caller ignores SIGPIPE. */
 static bool send_request(struct bridge_line *line)
 {
     const struct onboard_packet *request = &line->request;
@@ -114,7 +114,7 @@ static bool send_request(struct bridge_line *line)
     return true;
 }
 
-/* One good frame; whether it is the answer. BAD: what was asked did not arrive. */
+/* Processes one good frame; returns whether it is the answer. BAD: the request did not arrive. */
 static bool is_answer(struct bridge_line *line, bool *again)
 {
     struct onboard_packet *answer = &line->answer;
@@ -130,7 +130,7 @@ static bool is_answer(struct bridge_line *line, bool *again)
     return true;
 }
 
-/* Takes what was read up to the answer; behind it may be frames that come to another request. */
+/* Processes bytes up to the answer; frames after it may belong to another request. */
 static bool take_bytes(struct bridge_line *line, bool *again)
 {
     while (line->taken < line->n_in) {
@@ -145,7 +145,7 @@ static bool take_bytes(struct bridge_line *line, bool *again)
     return false;
 }
 
-/* Takes what is there, or waits up to `timeout` ms for it. */
+/* Processes the available bytes, or waits up to `timeout` ms for some. */
 static bool receive(struct bridge_line *line, int timeout, bool *again)
 {
     if (line->taken < line->n_in)

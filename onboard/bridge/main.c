@@ -1,4 +1,4 @@
-/* grrl-bridge: the agent's core on LCM with its learner on a controller behind a serial line. */
+/* grrl-bridge: the agent's core on LCM, with its learner on a controller behind a serial line. */
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
@@ -10,35 +10,35 @@
 #include "process.h"
 #include "remote_learner.h"
 
-/* How long a socket that is not there yet is waited for. */
+/* How long to wait for a socket that does not exist yet. */
 enum { SOCKET_MS = 5000 };
 
-static struct grrl_agent agent; /* large, and there is one */
+static struct grrl_agent agent; /* too large for the stack */
 static struct bridge_line line;
 
 struct run {
     const char *serial;
     const char *lcm_url;
-    struct grrl_policy_type policy; /* its name alone */
+    struct grrl_policy_type policy; /* only the name is set */
     uint64_t seed;
     bool quiet;
-    int32_t trials; /* that count */
-    int64_t pushes; /* in them */
+    int32_t trials; /* completed, not aborted */
+    int64_t pushes; /* in these trials */
 };
 
 static const struct grrl_program program = {
     .name = "grrl-bridge",
     .usage = "grrl-bridge --serial PATH [OPTION]...",
-    .intro =
-        "Puts a controller that runs grrl-image on LCM: takes the place of grrl-agent, and asks "
-        "the\ncontroller for everything that is believed, chosen and learned.\n",
+    .intro = "Connects a controller that runs grrl-image to LCM, in place of grrl-agent. The "
+             "controller\n"
+             "does all perception, choosing and learning.\n",
     .outro =
-        "Without --lcm-url the environment variable LCM_DEFAULT_URL counts. Damaged bytes on the "
-        "line\ncost time and change nothing; they are counted and shown at the end.\n"
-        "Exit status: 0 all trials done or stopped by a signal; 1 trouble; 2 wrong command line.\n",
+        "Without --lcm-url it uses the environment variable LCM_DEFAULT_URL. Damaged bytes on the "
+        "line\ncost time but do not change results; they are counted and shown at the end.\n"
+        "Exit status: 0 all trials done or stopped by a signal; 1 failure; 2 wrong command line.\n",
 };
 
-/* Which policies there are, the controller knows. */
+/* Only the controller knows its policies, so only the length is checked. */
 static const char *take_policy(void *context, const char *text)
 {
     ((struct grrl_policy_type *)context)->name = text;
@@ -53,11 +53,10 @@ static enum grrl_options_result parse(int argc, char **argv, struct run *run)
         grrl_option_text(
             "serial", "PATH",
             "Unix socket (qemu-system-arm -chardev socket,path=PATH,server=on) or serial\n"
-            "device with the controller behind it; needed",
+            "device of the controller; required",
             &run->serial),
-        grrl_option_call("policy", "NAME",
-                         "how the controller chooses, a policy of its image (learn)", take_policy,
-                         &run->policy),
+        grrl_option_call("policy", "NAME", "a policy in the controller's image (learn)",
+                         take_policy, &run->policy),
         grrl_option_u64("seed", "N", "seed of all random choices (1)", 0, UINT64_MAX, &run->seed),
         grrl_option_text("lcm-url", "URL", "LCM provider", &run->lcm_url),
         grrl_option_flag("quiet", "print errors only", &run->quiet),
@@ -66,7 +65,7 @@ static enum grrl_options_result parse(int argc, char **argv, struct run *run)
         grrl_options_parse(&program, rows, sizeof rows / sizeof rows[0], argc, argv, NULL);
     if (result == GRRL_OPTIONS_RUN && run->serial == NULL)
         return grrl_options_wrong(&program,
-                                  "--serial is needed, the controller's socket or device");
+                                  "--serial is required: the controller's socket or device");
     return result;
 }
 
@@ -89,13 +88,13 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     (void)fflush(stdout);
 }
 
-/* Until the trials are over, a signal comes, or LCM or the line fails. */
+/* Runs until the trials are over, a signal arrives, or LCM or the line fails. */
 static bool loop(const struct run *run, lcm_t *lcm)
 {
     struct grrl_process_watch watch = {.program = "grrl-bridge", .quiet = run->quiet};
     while (!grrl_process_stopped() && !line.failed && !grrl_agent_finished(&agent)) {
         if (lcm_handle_timeout(lcm, GRRL_PROCESS_POLL_MS) < 0 && !grrl_process_stopped()) {
-            (void)fprintf(stderr, "grrl-bridge: LCM fails to receive\n");
+            (void)fprintf(stderr, "grrl-bridge: LCM failed to receive\n");
             return false;
         }
         grrl_agent_tick(&agent);
@@ -112,7 +111,7 @@ static void report(const struct run *run, const struct bridge_result *result)
                  run->trials > 0 ? (double)run->pushes / run->trials : 0.0);
     (void)printf("line: %" PRIu64 " requests, %" PRIu64 " bytes out, %" PRIu64
                  " in; damaged frames: %" PRIu32 " out, %" PRIu32 " in; %" PRIu32
-                 " requests sent again, %" PRIu32 " answers too many\n",
+                 " requests resent, %" PRIu32 " surplus answers\n",
                  counts->requests, counts->bytes_out, counts->bytes_in, counts->damaged_out,
                  counts->damaged_in, counts->resent, counts->late);
     (void)printf("models %016" PRIx64 "\ndecisions %016" PRIx64 "\nupdates %016" PRIx64
@@ -155,7 +154,7 @@ int main(int argc, char **argv)
     if (parsed != GRRL_OPTIONS_RUN)
         return parsed;
     grrl_process_catch_signals();
-    (void)signal(SIGPIPE, SIG_IGN); /* a controller that is gone is an error of write */
+    (void)signal(SIGPIPE, SIG_IGN); /* a closed connection is an error of write */
     lcm_t *lcm = grrl_process_open_lcm("grrl-bridge", run.lcm_url);
     if (lcm == NULL)
         return EXIT_FAILURE;

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The functions of grrl/learner.h have no room for it, and a process has one controller. */
+/* The functions of grrl/learner.h have no parameter for it, and a process has one controller. */
 static struct bridge_line *line;
 static struct grrl_usage usage;
 
@@ -19,7 +19,7 @@ static void fail(const char *why)
     (void)snprintf(line->why, sizeof line->why, "%s", why);
 }
 
-/* The status in the answer to line->request, which must be of this type. */
+/* Returns the status in the answer to line->request, which must be of this type. */
 static enum grrl_status ask(enum onboard_packet_type wanted)
 {
     if (!bridge_line_ask(line))
@@ -34,9 +34,9 @@ static enum grrl_status ask(enum onboard_packet_type wanted)
     else if (answer->type == ONBOARD_REFUSED && status == GRRL_ERR_NONE)
         fail("the controller's image does not have this policy; build it with ONBOARD_POLICIES");
     else if (answer->type == ONBOARD_REFUSED && status == GRRL_ERR_ORDER)
-        fail("the controller was restarted and has lost what it learned; start the run again");
+        fail("the controller was restarted and lost what it learned; start the run again");
     else
-        fail("the controller gives an answer that is none; is its image of this version?");
+        fail("the controller sent an invalid answer; does its image have this version?");
     return GRRL_ERR_IO;
 }
 
@@ -48,11 +48,11 @@ static enum grrl_status ask_for(enum onboard_packet_type request, uint64_t value
     return ask(wanted);
 }
 
-/* An answer that says it is fine and is not. */
-static enum grrl_status unless(bool fine, enum grrl_status status)
+/* Rejects an answer that reports success but is malformed. */
+static enum grrl_status check_answer(bool fine, enum grrl_status status)
 {
     if (!fine && status == GRRL_OK) {
-        fail("the controller gives an answer that is none; is its image of this version?");
+        fail("the controller sent an invalid answer; does its image have this version?");
         return GRRL_ERR_FORMAT;
     }
     return status;
@@ -64,7 +64,7 @@ enum grrl_status grrl_learner_init(struct grrl_learner *learner,
 {
     memset(learner, 0, sizeof *learner);
     learner->config = *config;
-    learner->policy = policy; /* its type alone: the memory is the controller's */
+    learner->policy = policy; /* only its type: the memory is on the controller */
     usage = (struct grrl_usage){.capacity = ONBOARD_ENTRIES};
     onboard_put_open(&line->request, config->seed, policy.type->name);
     return ask(ONBOARD_DONE);
@@ -97,7 +97,7 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
     bool fine = onboard_get_model(&line->answer, model);
     if (!fine)
         *model = (struct grrl_model){0};
-    return unless(fine, status);
+    return check_answer(fine, status);
 }
 
 const struct grrl_model *grrl_perception_model(const struct grrl_perception *perception)
@@ -109,7 +109,7 @@ enum grrl_status grrl_learner_choose(struct grrl_learner *learner, struct grrl_d
 {
     (void)learner;
     enum grrl_status status = ask_for(ONBOARD_CHOOSE, 0, 0, ONBOARD_DECISION);
-    return unless(status != GRRL_OK || onboard_get_decision(&line->answer, decision), status);
+    return check_answer(status != GRRL_OK || onboard_get_decision(&line->answer, decision), status);
 }
 
 enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
@@ -117,10 +117,11 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
 {
     (void)learner;
     enum grrl_status status = ask_for(ONBOARD_LEARN, ended, 1, ONBOARD_UPDATE);
-    return unless(status != GRRL_OK || onboard_get_update(&line->answer, update, &usage), status);
+    return check_answer(status != GRRL_OK || onboard_get_update(&line->answer, update, &usage),
+                        status);
 }
 
-/* The controller forgets a trial when the next one begins; until then it is asked nothing. */
+/* The controller drops the trial when the next one begins; no request is sent until then. */
 void grrl_learner_abandon_trial(struct grrl_learner *learner)
 {
     (void)learner;
@@ -132,7 +133,7 @@ struct grrl_usage grrl_learner_usage(const struct grrl_learner *learner)
     return usage;
 }
 
-/* The core observes other agents with this; the bridge does not. */
+/* The core calls this to observe other agents; the bridge never does. */
 enum grrl_status grrl_learner_adopt(struct grrl_learner *learner, uint16_t body_number,
                                     uint8_t direction, bool exploited,
                                     struct grrl_decision *decision)
@@ -150,6 +151,6 @@ bool bridge_learner_close(struct bridge_result *result)
     result->updates = onboard_get(&line->answer, 8);
     result->store = onboard_get(&line->answer, 8);
     if (!onboard_packet_used_up(&line->answer))
-        fail("the controller's last answer has another length than expected");
+        fail("the controller's last answer has the wrong length");
     return !line->failed;
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
-# budget.sh FOLDER TARGET: what the image takes, in TARGET.rows, and whether that is too much. Also:
-# nothing from the heap, no printing, no double precision, no recursion. Runs after same_image.sh.
+# budget.sh FOLDER TARGET: writes the image's resource use to TARGET.rows and checks the limits. Also
+# checks: no heap, no printing, no double precision, no recursion. Runs after same_image.sh.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 folder=$1 target=$2
@@ -14,18 +14,19 @@ if "${CROSS}nm" "$image" | awk '{ print $NF }' | grep -xE "$forbidden"; then
 fi
 
 mapfile -t graphs < <(find "$folder/$target" -name '*.ci')
-# Calls through pointers: where they are, and where they may lead.
-pointers=$(sed -n 's/.*targetname: "__indirect_call" label: "\([^"]*\)".*/\1/p' "${graphs[@]}" |
-    sed 's/:.*//; s|.*/||' | sort -u | tr '\n' ' ')
-[ "$pointers" = "controller.c record.c replay.c worst.c " ] ||
-    fail "calls through pointers in $pointers: budget.sh does not know where they lead"
-awk -v root=main -v unknown=64 -v skipped="$SOURCE/onboard/image/machine.c:overflow_stack" \
-    -v callbacks="machine_count $SOURCE/onboard/controller.c:hash_bytes \
-$SOURCE/onboard/image/main.c:read_input" -f "$SOURCE/onboard/check/stack.awk" "${graphs[@]}" \
+here=$SOURCE/onboard
+count=machine_count
+bytes=$here/controller.c:hash_bytes
+# What calls through a pointer reach: the counter, the policies, what takes and gives bytes.
+pointers="controller.c=$count learner.c=@policies policy.c=@policies record.c=$bytes"
+pointers+=" replay.c=$here/image/main.c:read_input worst.c=$count,@policies"
+awk -v root=main -v unknown=64 -v skipped="$here/image/machine.c:overflow_stack" \
+    -v pointers="$pointers" -f "$here/check/stack.awk" "${graphs[@]}" \
     >"$folder/$target.stack" || { cat "$folder/$target.stack"; fail "see above"; }
 
 emulate "$target" "$image" worst | tee "$folder/$target.worst"
 "${CROSS}size" -A -d "$image" >"$folder/$target.size"
+"${CROSS}size" -A -d "$folder/$target-alone/onboard/grrl-image" | sed 's/^\./alone ./' >>"$folder/$target.size"
 awk -v target="$target" -f "$SOURCE/onboard/check/budget.awk" \
     policy=learn "$folder/$target-learn.txt" policy=paper "$folder/$target-paper.txt" \
     "$folder/$target.stack" "$folder/$target.size" "$folder/$target.worst" \

@@ -1,5 +1,5 @@
-# A run of each policy is recorded once; each target then replays both. What is not installed is
-# skipped.
+# One run of each policy is recorded; each target then replays both. Targets whose tools are not
+# installed are skipped.
 set(checks ${CMAKE_CURRENT_LIST_DIR})
 set(folder ${CMAKE_CURRENT_BINARY_DIR}/runs)
 function(onboard_check name)

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# Sourced by the checks in this folder. Exit status: 0 fine, 1 failed, 77 skipped.
+# Sourced by the checks in this folder. Exit status: 0 passed, 1 failed, 77 skipped.
 set -euo pipefail
 # shellcheck disable=SC2034
 POLICIES="learn paper"
@@ -47,8 +47,8 @@ need_target() {
     esac
 }
 
-# emulate TARGET IMAGE ARGUMENT..: an instruction takes 64 ns of the machine's own time, so that its
-# clock counts instructions; the result does not depend on this machine.
+# emulate TARGET IMAGE ARGUMENT..: an instruction takes 64 ns of emulated time, so the emulated clock
+# counts instructions; the result does not depend on this machine.
 emulate() {
     local target=$1 image=$2 argument
     local options=enable=on,target=native,arg=grrl-image
@@ -66,8 +66,8 @@ hashes() {
     grep -E '^(models|decisions|updates|store) [0-9a-f]{16}$' "$1"
 }
 
-# same EXPECTED OUTPUT: all four hashes are there, and equal
+# same EXPECTED OUTPUT: all four hashes are present and equal
 same() {
     [ "$(hashes "$1" | wc -l)" -eq 4 ] || fail "$1 does not hold four hashes"
-    diff <(hashes "$1") <(hashes "$2") || fail "other results than where it was recorded"
+    diff <(hashes "$1") <(hashes "$2") || fail "the results differ from the recorded ones"
 }

@@ -16,4 +16,4 @@ done
 code=0
 emulate "$target" "$folder/$target/onboard/grrl-image" replay "$folder/learn.pushes" >/dev/null ||
     code=$?
-[ "$code" -eq 1 ] || fail "what is no recording must exit with 1, not $code"
+[ "$code" -eq 1 ] || fail "a file that is not a recording must give exit code 1, not $code"

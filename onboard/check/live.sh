@@ -1,7 +1,7 @@
 #!/bin/bash
 # live.sh FOLDER AGENT BRIDGE SIM RECORDER REPLAYER: the emulated controller learns on LCM, through
-# its serial line. It must come to the same as the recorder does without LCM, line and emulator, and
-# its last ten trials must take less than half of the pushes of a random choice. Runs after
+# its serial line. Its results must equal those of the recorder, which uses no LCM, line or emulator.
+# Its last ten trials must take less than half of the pushes of random choice. Runs after
 # same_image.sh.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -13,7 +13,7 @@ object=RPRPRPR trials=20 seed=1
 need_target cortex-m4
 trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT
 
-# simulate NAME PORT AGENT-COMMAND..: what it says is in NAME.txt, the trials' pushes in NAME.csv
+# simulate NAME PORT AGENT-COMMAND..: output goes to NAME.txt, the trials' pushes to NAME.csv
 simulate() {
     local name=$folder/$1 url="udpm://239.255.76.67:$2?ttl=0" start=$SECONDS
     shift 2
@@ -39,4 +39,4 @@ awk -F, 'FNR == 1 { file++ }
         random = n > 0 ? sum / n : 0
         printf "pushes a trial: %.1f at random, %.1f in the last ten trials learned\n", random, last
         exit !(m >= 20 && last < random / 2)
-    }' "$folder/random.csv" "$folder/live.csv" || fail "no learning shows"
+    }' "$folder/random.csv" "$folder/live.csv" || fail "the run shows no learning"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# same_host.sh FOLDER COMPILER LEVEL: the recorded runs on this machine, compiled like this.
+# same_host.sh FOLDER COMPILER LEVEL: replays the recorded runs on this machine, compiled this way.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 folder=$1 compiler=$2 level=$3

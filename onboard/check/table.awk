@@ -1,4 +1,4 @@
-# One table of the rows of all targets, each file under the name before it as target=..
+# Makes one table from the rows of all targets; each file is preceded by target=..
 BEGIN { FS = "\t" }
 FNR == 1 { targets++; head[targets] = target }
 {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# units.sh FOLDER TARGET: the library's tests on an emulated controller. Runs after same_image.sh.
+# units.sh FOLDER TARGET: runs the library's tests on an emulated controller. Runs after same_image.sh.
 # shellcheck source=onboard/check/common.sh
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 folder=$1 target=$2

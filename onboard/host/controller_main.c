@@ -1,4 +1,4 @@
-/* grrl-controller: the image's controller as a process of this machine, behind a Unix socket. */
+/* grrl-controller: the image's controller as a process on this machine, behind a Unix socket. */
 #define _POSIX_C_SOURCE 200809L
 
 #include <errno.h>
@@ -17,7 +17,7 @@
 static struct onboard_controller controller;
 static struct onboard_server server;
 
-/* A line that damages bytes: each with probability 1 / every; 0: none. */
+/* Simulates a damaging line: each byte is hit with probability 1 / every; 0: none. */
 struct noise {
     uint32_t every;
     struct grrl_random random;
@@ -26,9 +26,10 @@ struct noise {
 static const struct grrl_program program = {
     .name = "grrl-controller",
     .usage = "grrl-controller --socket PATH [--damage N] [--seed N]",
-    .intro = "The controller of grrl-image, without emulator: waits at a new Unix socket for "
-             "grrl-bridge and\nserves it until the line is closed.\n",
-    .outro = "Exit status: 0 the line was closed; 1 trouble; 2 wrong command line.\n",
+    .intro =
+        "Runs the controller of grrl-image without an emulator: waits at a new Unix socket for "
+        "grrl-bridge and\nserves it until the line is closed.\n",
+    .outro = "Exit status: 0 the line was closed; 1 failure; 2 wrong command line.\n",
 };
 
 static int fail(const char *path)
@@ -37,7 +38,7 @@ static int fail(const char *path)
     return EXIT_FAILURE;
 }
 
-/* The one peer of a new socket, or -1. */
+/* Accepts one peer at a new socket, or returns -1. */
 static int accept_at(const char *path)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
@@ -61,7 +62,7 @@ static int accept_at(const char *path)
     return peer;
 }
 
-/* What comes of n bytes on the line, at most twice as many. */
+/* Damages n bytes on the line; the result has at most twice as many. */
 static size_t damage(struct noise *noise, const uint8_t *bytes, size_t n, uint8_t *damaged)
 {
     size_t m = 0;
@@ -116,10 +117,10 @@ int main(int argc, char **argv)
     struct noise noise = {0};
     uint64_t seed = 1;
     const struct grrl_option rows[] = {
-        grrl_option_text("socket", "PATH", "where to listen; needed", &path),
+        grrl_option_text("socket", "PATH", "Unix socket to create; required", &path),
         grrl_option_u32("damage", "N",
-                        "damages one byte in N, in both directions, to test the line: changes it,\n"
-                        "leaves it out, or puts another before it",
+                        "damage one byte in N, in both directions, to test the line: change it,\n"
+                        "drop it, or insert another before it",
                         0, UINT32_MAX, &noise.every),
         grrl_option_u64("seed", "N", "seed of the damage (1)", 0, UINT64_MAX, &seed),
     };
@@ -128,7 +129,7 @@ int main(int argc, char **argv)
     if (parsed != GRRL_OPTIONS_RUN)
         return parsed;
     if (path == NULL)
-        return grrl_options_wrong(&program, "--socket is needed");
+        return grrl_options_wrong(&program, "--socket is required");
     grrl_random_init(&noise.random, seed, 0);
     (void)signal(SIGPIPE, SIG_IGN);
     int fd = accept_at(path);

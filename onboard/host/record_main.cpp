@@ -1,5 +1,5 @@
-/* grrl-record OBJECT TRIALS SEED POLICY RECORDING: a run of the simulated world and the controller
- * in one process, as the packets the controller was given. */
+/* grrl-record OBJECT TRIALS SEED POLICY RECORDING: runs the simulated world and the controller in
+ * one process, and records the packets given to the controller. */
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -38,7 +38,7 @@ void write(Run &run)
         run.failed = true;
 }
 
-/* Whether the learner could do it. */
+/* Whether the learner succeeded. */
 bool send(Run &run)
 {
     write(run);
@@ -54,7 +54,7 @@ bool send(Run &run, onboard_packet_type type, uint64_t value = 0, unsigned bytes
     return send(run);
 }
 
-/* For whoever replays it: what it should have come to by now. */
+/* Records the expected hashes so far, for the replay. */
 void expect(Run &run)
 {
     const onboard_hashes &hashes = run.controller->hashes;
@@ -86,7 +86,7 @@ void settle(Run &run, World &world)
     send(run, ONBOARD_PERCEIVE);
 }
 
-/* What the learner just decided, as the robot takes it. A refused push moves nothing. */
+/* Executes the push that the learner just decided. A refused push moves nothing. */
 void push(Run &run, World &world)
 {
     onboard_packet &answer = run.controller->answer;
@@ -113,15 +113,15 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, int32_t number)
     bool found = false;
     while (!run.failed && !found && pushes < most_pushes) {
         if (!send(run, ONBOARD_CHOOSE))
-            break; /* no link is seen that could be pushed */
+            break; /* no link to push */
         push(run, world);
         pushes++;
         settle(run, world);
-        grrl_graph believed;
+        grrl_graph estimated;
         const grrl_learner &learner = run.controller->learner;
         grrl_relational_state_of(grrl_perception_model(&learner.perception), learner.config.large_m,
-                                 &believed, nullptr, nullptr);
-        found = supervisor.judge(believed).correct;
+                                 &estimated, nullptr, nullptr);
+        found = supervisor.judge(estimated).correct;
         send(run, ONBOARD_LEARN, found ? 1 : 0, 1);
         expect(run);
     }
@@ -133,7 +133,7 @@ const grrl_program program = {
     "grrl-record OBJECT TRIALS SEED learn|paper RECORDING",
     "Runs the simulated world and the controller in one process, and writes the packets that the\n"
     "controller was given; grrl-replay and the images in onboard/ read them.\n",
-    "Exit status: 0 fine; 1 trouble; 2 wrong command line.\n",
+    "Exit status: 0 success; 1 failure; 2 wrong command line.\n",
     5,
     "expected OBJECT TRIALS SEED POLICY RECORDING",
 };

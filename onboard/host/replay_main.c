@@ -1,4 +1,4 @@
-/* grrl-replay RECORDING: the hashes of a recorded run on this machine. */
+/* grrl-replay RECORDING: prints the hashes of a recorded run on this machine. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,10 +14,10 @@ static const struct grrl_program program = {
     .name = "grrl-replay",
     .usage = "grrl-replay RECORDING",
     .intro = "Gives a recording of grrl-record to the controller and prints the hashes of what\n"
-             "it believed, decided and learned.\n",
-    .outro = "Exit status: 0 fine; 1 the recording is bad; 2 wrong command line.\n",
+             "it estimated, decided and learned.\n",
+    .outro = "Exit status: 0 success; 1 the recording is invalid; 2 wrong command line.\n",
     .most_arguments = 1,
-    .arguments = "one recording only",
+    .arguments = "give only one recording",
 };
 
 static int read_file(void *context, void *bytes, size_t size)

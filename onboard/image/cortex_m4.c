@@ -12,8 +12,8 @@ _Noreturn void reset(void);
 void fault(void);
 
 #define REGISTER(address) (*(volatile uint32_t *)(uintptr_t)(address))
-#define CPACR REGISTER(0xe000ed88) /* access to the floating-point unit */
-#define SHCSR REGISTER(0xe000ed24) /* which faults have their own handler */
+#define CPACR REGISTER(0xe000ed88) /* enables the floating-point unit */
+#define SHCSR REGISTER(0xe000ed24) /* which faults have their own handlers */
 #define CCR REGISTER(0xe000ed14)
 #define MPU_CTRL REGISTER(0xe000ed94)
 #define MPU_RNR REGISTER(0xe000ed98)
@@ -26,7 +26,7 @@ void fault(void);
 #define TIMER_VALUE REGISTER(0x40000004)
 #define TIMER_RELOAD REGISTER(0x40000008)
 #define UART_DATA REGISTER(0x40004000)
-#define UART_STATE REGISTER(0x40004004) /* bit 0: cannot take a byte, bit 1: has one */
+#define UART_STATE REGISTER(0x40004004) /* bit 0: transmitter full, bit 1: byte received */
 #define UART_CTRL REGISTER(0x40004008)
 #define UART_INTERRUPT REGISTER(0x4000400c)
 #define UART_DIVIDER REGISTER(0x40004010)
@@ -56,13 +56,13 @@ __attribute__((naked)) intptr_t semihost(intptr_t operation, const void *paramet
     __asm__ volatile("bkpt 0xab\n\tbx lr");
 }
 
-/* The stack may be what failed: it starts anew. */
+/* The stack may have caused the fault, so it starts afresh. */
 __attribute__((naked)) void fault(void)
 {
     __asm__ volatile("ldr r0, =stack_top\n\tmsr msp, r0\n\tmrs r0, ipsr\n\tb onboard_fault");
 }
 
-/* No access, 2^bits bytes, never to be executed. */
+/* Forbids access to and execution of 2^bits bytes. */
 static void forbid(uint32_t region, uintptr_t address, uint32_t bits)
 {
     MPU_RNR = region;
@@ -70,13 +70,13 @@ static void forbid(uint32_t region, uintptr_t address, uint32_t bits)
     MPU_RASR = 1u << 28 | (bits - 1) << 1 | 1u;
 }
 
-/* The first kilobyte, where null pointers point (the vectors are read in any case), and 32 KiB
- * below the stack, more than any frame. */
+/* Protects the first kilobyte, where null pointers point (the core can still read the vectors), and
+ * 32 KiB below the stack, more than any frame. */
 static void protect(void)
 {
     forbid(0, 0, 10);
     forbid(1, (uintptr_t)stack_bottom - 0x8000, 15);
-    MPU_CTRL = 5; /* on, and the default map for all else */
+    MPU_CTRL = 5; /* enabled, with the default map for everything else */
     __asm__ volatile("dsb\n\tisb");
 }
 
@@ -88,7 +88,8 @@ _Noreturn void reset(void)
     CCR |= 1u << 4;    /* division by zero is a fault */
     uint32_t *here;
     __asm__ volatile("mov %0, sp" : "=r"(here));
-    /* Volatile: the compiler makes this no memset, which would paint its own frame. */
+    /* Volatile, so that the compiler does not make this a memset, which would paint
+     * its own frame. */
     for (volatile uint32_t *word = stack_bottom; word < here; word++)
         *word = 0xa5a5a5a5u;
     const uint32_t *from = data_image;
@@ -105,8 +106,8 @@ _Noreturn void reset(void)
     machine_exit((uint32_t)main());
 }
 
-/* The interrupt of a received byte ends the wait and is never taken; elsewhere it stays off,
- * because with interrupts masked every fault would count as a hard one. */
+/* The interrupt of a received byte ends the wait but is never taken. Elsewhere it stays off,
+ * because with interrupts masked every fault would become a hard fault. */
 uint8_t machine_serial_get(void)
 {
     __asm__ volatile("cpsid i");
@@ -133,7 +134,7 @@ uint32_t machine_count(void)
     return UINT32_MAX - TIMER_VALUE;
 }
 
-/* At 25 MHz, 40 ns a tick; -icount shift=6 gives an instruction 64 ns. */
+/* At 25 MHz a tick is 40 ns; with -icount shift=6 an instruction takes 64 ns. */
 uint64_t machine_instructions(uint64_t count)
 {
     return count * 40 / 64;

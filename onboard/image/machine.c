@@ -1,4 +1,4 @@
-/* The part of the machine that is the same everywhere: semihosting, stack, assertions. */
+/* The machine-independent part: semihosting, stack, assertions. */
 #include "machine.h"
 
 #include <string.h>
@@ -14,7 +14,7 @@ enum {
 #define ADP_STOPPED_APPLICATION_EXIT 0x20026
 #define STACK_PAINT 0xa5a5a5a5u
 
-/* Both in the startup code of the machine. */
+/* Both are defined in the machine's startup code. */
 extern intptr_t semihost(intptr_t operation, const void *parameters);
 extern uint32_t stack_bottom[], stack_top[];
 
@@ -56,7 +56,7 @@ size_t machine_stack_size(void)
     return (size_t)((uintptr_t)stack_top - (uintptr_t)stack_bottom);
 }
 
-/* The startup code has painted it. */
+/* The startup code painted the stack. */
 size_t machine_stack_used(void)
 {
     const uint32_t *word = stack_bottom;
@@ -70,7 +70,7 @@ _Noreturn void onboard_fault(uint32_t number)
     machine_exit(EXIT_FAULT + number);
 }
 
-/* Instead of the C library's, which prints. */
+/* Replaces the C library's version, which prints. */
 _Noreturn void __assert_func(const char *file, int line, const char *function, const char *text);
 
 _Noreturn void __assert_func(const char *file, int line, const char *function, const char *text)
@@ -84,7 +84,7 @@ _Noreturn void __assert_func(const char *file, int line, const char *function, c
     machine_exit(EXIT_ASSERT);
 }
 
-/* A frame larger than the stack, for the test only: no call of it counts as use of the stack. */
+/* Uses a frame larger than the stack, to test the fault handler; excluded from stack use. */
 __attribute__((noinline)) static uint32_t overflow_stack(uint32_t at)
 {
     volatile uint32_t hole[8192];

@@ -1,9 +1,9 @@
 /*
- * The image. Its arguments:
+ * The image's main program. Its arguments:
  *
- *   replay FILE   runs a recording and tells its hashes and what it cost, a name and numbers a line
- *   serve         is the controller behind the serial line; tells after each run what it took
- *   worst         tells what decisions cost at full capacity
+ *   replay FILE   runs a recording and prints its hashes and its cost, one name with numbers a line
+ *   serve         is the controller behind the serial line; prints the cost after each run
+ *   worst         prints the cost of decisions at full capacity
  *   fault NAME    provokes a fault
  */
 #include <string.h>
@@ -71,7 +71,7 @@ static void write_line(const char *name, uint64_t number)
     machine_write("\n");
 }
 
-/* How often, mean and most instructions. */
+/* The number of steps, and the mean and maximum of instructions. */
 static void write_costs(void)
 {
     static const char *const names[ONBOARD_STEPS] = {"frame", "perceive", "choose", "learn"};
@@ -96,6 +96,8 @@ static void write_memory(void)
     write_line("ram input", sizeof input + sizeof arguments);
     write_line("ram stack", machine_stack_size());
     write_line("stack painted", machine_stack_used());
+    if (!controller.open)
+        return; /* there is no learner yet */
     const struct grrl_usage used = grrl_learner_usage(&controller.learner);
     write_line("used entries", used.n);
     write_line("used features", controller.learner.perception.counts.features_high);
@@ -131,7 +133,7 @@ static int replay(const char *path)
     return status == GRRL_OK ? EXIT_FINE : EXIT_DIFFERS;
 }
 
-/* Of each policy in the image. */
+/* For each policy in the image. */
 static void write_worst(void)
 {
     static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
@@ -142,7 +144,7 @@ static void write_worst(void)
     }
 }
 
-/* Until the machine is switched off. */
+/* Runs until the machine is switched off. */
 static _Noreturn void serve(void)
 {
     onboard_controller_init(&controller, NULL);

@@ -9,9 +9,9 @@ reset:
     la sp, stack_top
     la t0, trap
     csrw mtvec, t0
-    li t0, 0x6000 /* the floating-point unit on */
+    li t0, 0x6000 /* enables the floating-point unit */
     csrs mstatus, t0
-    /* No access to the 32 KiB below the stack, not for machine mode either (locked). */
+    /* Forbids access to the 32 KiB below the stack, also in machine mode (locked). */
     la t0, stack_bottom
     li t1, 0x8000
     sub t0, t0, t1
@@ -54,7 +54,7 @@ semihost:
     .option pop
 
     .globl machine_count
-machine_count: /* QEMU's minstret is its clock in ns: 64 an instruction with -icount shift=6 */
+machine_count: /* QEMU's minstret is its clock in ns: 64 per instruction with -icount shift=6 */
     csrr a0, minstret
     srli a0, a0, 6
     sext.w a0, a0

@@ -1,4 +1,4 @@
-/* worst.c: structures that make a policy work hard, and what it then costs. */
+/* worst.c: measures decisions on structures that are hard for a policy. */
 #include "worst.h"
 
 #include <string.h>
@@ -10,8 +10,8 @@ static struct grrl_model model;
 static struct grrl_graph state;
 
 /*
- * A tree with up to two loops, of links and joints that are all alike: nothing but its shape tells
- * one from another, which makes the longest searches. Places and lengths vary, for contexts.
+ * Makes a tree with up to two loops, whose links and joints are all alike. Only its shape
+ * distinguishes them, which makes searches longest. Positions and lengths vary, for contexts.
  */
 static void make_state(uint8_t links)
 {
@@ -40,7 +40,8 @@ static uint8_t any_links(void)
     return (uint8_t)(GRRL_MAX_LINKS / 2 + grrl_random_below(&random, GRRL_MAX_LINKS / 2 + 1));
 }
 
-/* A decision in the present state; what came of it is seen in another one of as many links. */
+/* Decides in the current state and learns the outcome, which is another state with
+ * as many links. */
 static uint32_t decide(const struct grrl_policy *policy, uint8_t links, uint32_t (*count)(void))
 {
     const struct grrl_view view = {NULL, &model, &state, 0.15f};
@@ -68,7 +69,7 @@ uint32_t worst_decision(struct onboard_controller *controller, const struct grrl
     make_state(any_links());
     for (int i = 0; type->usage != NULL && type->usage(policy.self).evictions < 1; i++) {
         if (i == MOST_FILLING)
-            return 0; /* it does not fill up: then this measures nothing */
+            return 0; /* its memory does not fill up, so this measures nothing */
         (void)decide(&policy, any_links(), count);
     }
     uint32_t most = 0;

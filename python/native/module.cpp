@@ -13,6 +13,7 @@ namespace
 
 void bind_constants(nb::module_ &m)
 {
+    m.attr("VERSION") = GRRL_PYTHON_VERSION;
     m.attr("MAX_LINKS") = static_cast<int>(GRRL_MAX_LINKS);
     m.attr("MAX_JOINTS") = static_cast<int>(GRRL_MAX_JOINTS);
     m.attr("MAX_FEATURES") = static_cast<int>(GRRL_MAX_FEATURES);

@@ -196,7 +196,7 @@ static void help_lists_the_table(void **state)
                                     "  --seed N    seed (1)\n"
                                     "  --noise MM  of a point\n"
                                     "  --shape X   a letter\n"
-                                    "  --help      print this text\n"
+                                    "  --help      print this help\n"
                                     "  --version   print the version\n"
                                     "\n"
                                     "Exit status: 0.\n");

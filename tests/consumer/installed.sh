@@ -15,7 +15,7 @@ found_by_cmake() {
     languages=$1
     shift
     rm -rf "$work/build"
-    quiet cmake -S "$here" -B "$work/build" -DCONSUMER_LANGUAGES="$languages" \
+    quiet cmake -S "$here" -B "$work/build" -DCONSUMER_LANGUAGES="$languages" -DCONSUMER_VERSION="$version" \
         -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$work/grrl" \
         -DCMAKE_C_FLAGS='-std=c11 -Wall -Wextra -Werror' -DCMAKE_CXX_FLAGS='-Wall -Wextra -Werror'
     quiet cmake --build "$work/build"

@@ -15,8 +15,11 @@ library=$work/shared/lib/libgrrl.so.$version
 # Declared: functions and arrays, without what is static inline, which nm does not know.
 (cd "$source/lib/include" && find grrl -name '*.h' | sed 's/.*/#include "&"/') >"$work/all.c"
 "$cc" -E -P -I"$source/lib/include" -I"$work/shared/lib/include" "$work/all.c" >"$work/all.i"
-grep -v 'static inline' "$work/all.i" | sed 's/[a-z_]* (\*.*//' | grep -o '\bgrrl_[a-zA-Z0-9_]* *[([]' |
-    tr -d ' ([' | sort -u >"$work/declared"
+{
+    grep -v '^ \|static inline' "$work/all.i" | sed 's/[a-z_]* (\*.*//' |
+        grep -o '\bgrrl_[a-zA-Z0-9_]* *[([]' | tr -d ' (['
+    grep -o 'grrl_policy_type grrl_policy_[a-z]*;' "$work/all.i" | sed 's/.* //; s/;//'
+} | sort -u >"$work/declared"
 nm -D --defined-only "$library" | awk '{print $3}' | sort -u >"$work/exported"
 [ "$(wc -l <"$work/declared")" -gt 50 ] || wrong "no functions found in the public headers"
 diff "$work/declared" "$work/exported" >"$work/log" || {

@@ -17,4 +17,9 @@ start sim env LD_PRELOAD="$JUMPS" timeout 60 "$SIM" --lcm-url "$SIM_URL" --objec
 finish "$LAST" grrl-sim
 finish "$agent" grrl-agent
 kill -TERM "$relay"
+finish "$relay" "the relay"
+grep -q ' [1-9][0-9]* lost' relay.txt || fail "no message was lost"
+for program in agent sim; do
+    grep -q 'the time of day jumps' "$program.txt" || fail "the clock of grrl-$program stood firm"
+done
 same clean.store jumped.store

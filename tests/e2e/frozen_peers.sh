@@ -23,7 +23,13 @@ freeze() {
     local process
     process=$(pgrep -P "$2") || fail "$1 is not there any more"
     kill -STOP "$process"
+    local before after
+    before=$(wc -l <r.csv)
+    [ "$before" -lt 31 ] || fail "the run was over before $1 was frozen"
     sleep 2.5
+    grep -q '^State:.*stopped' "/proc/$process/status" || fail "$1 was not stopped"
+    after=$(wc -l <r.csv)
+    [ "$after" -le $((before + 1)) ] || fail "the run went on though $1 was stopped"
     kill -CONT "$process"
 }
 

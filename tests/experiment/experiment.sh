@@ -73,7 +73,7 @@ figure)
     fi
     run ablations --figure ablations --policy learn,paper-exact --trials 2 --experiments 2
     grep -q '^RPRPRPR,paper-exact,none,2,1002,2,' ablations/trials.csv || fail "no ablation"
-    grep -q 'nothing but the very same structure' ablations/report.html || fail "no explanation"
+    grep -q 'recalls only the same structure' ablations/report.html || fail "no explanation"
     [ ! -e ablations/ablations.svg ] || grep -q '<svg' ablations/ablations.svg || fail "no SVG"
     ;;
 transports)
@@ -100,32 +100,32 @@ killed)
         [ "$how" = KILL ] || [ "$status" -eq 130 ] || fail "SIGTERM: exit status $status"
         [ ! -e parts/trials.csv ] || fail "it ended before it was killed"
         run parts "${options[@]}"
-        grep -q 'of 12 experiments are there already' output.txt || fail "nothing was kept"
+        grep -q 'of 12 experiments are already done' output.txt || fail "nothing was kept"
         same whole parts
     done
     echo rubbish >parts/experiments/curve-02-0003.csv # a broken one is done again
     run parts "${options[@]}"
-    grep -q '11 of 12 experiments are there already' output.txt || fail "rubbish was believed"
+    grep -q '11 of 12 experiments are already done' output.txt || fail "rubbish was believed"
     same whole parts
     run parts "${few[@]}" --experiments 2 # fewer are part of the same
-    grep -q '4 of 4 experiments are there already' output.txt || fail "repeated"
+    grep -q '4 of 4 experiments are already done' output.txt || fail "repeated"
     status=0
     "$BIN" --out parts "${options[@]}" --seed 9 >output.txt 2>&1 || status=$?
     [ "$status" -eq 1 ] || fail "other settings: exit status $status"
     grep -q "'seed 1' there, 'seed 9' here" output.txt || fail "other settings: no message"
     ;;
 options)
-    refused 'one of --figure and --object' --out x
-    refused 'one of --figure and --object' --out x --object RR --figure 3b
-    refused '--out is needed' --object RR
-    refused '--policy nobody: must be one or several' --object RR --out x --policy nobody
-    refused 'none twice' --object RR --out x --policy rule,rule
+    refused 'give either --figure or --object' --out x
+    refused 'give either --figure or --object' --out x --object RR --figure 3b
+    refused '--out is required' --object RR
+    refused '--policy nobody: must be one or more' --object RR --out x --policy nobody
+    refused 'without repetition' --object RR --out x --policy rule,rule
     refused '--policy : must be' --object RR --out x --policy ''
     refused '--trials 0: must be a whole number from 1' --object RR --out x --trials 0
     refused '--jobs -1: must be' --object RR --out x --jobs -1
     refused '--figure 5: must be 3b, 4a, 4b, 4c, all or ablations' --figure 5 --out x
     refused '--pretrain RR: must be an object, a colon' --object RR --out x --pretrain RR
-    refused '--pretrain goes with --object' --figure 4a --out x --pretrain RR:2
+    refused '--pretrain requires --object' --figure 4a --out x --pretrain RR:2
     refused '--noise nan: must be' --object RR --out x --noise nan
     refused '--transport tcp: must be memq or udpm' --object RR --out x --transport tcp
     refused 'needs the simulator in the same process' --object RR --out x --transport udpm \

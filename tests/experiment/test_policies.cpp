@@ -176,7 +176,7 @@ void the_clairvoyant_goes_for_what_is_not_known(void **)
     grrl_perception_config_default(&config);
     auto perception = std::make_unique<grrl_perception>();
     assert_int_equal(grrl_perception_init(perception.get(), &config), GRRL_OK);
-    chooser->look(*perception); /* which has seen nothing: motion alone decides */
+    chooser->observe(*perception); /* which has seen nothing: motion alone decides */
     uint64_t before = world.state_hash();
     int number = chooser->choose(model).body_number;
     assert_true(number >= 5); /* the joint between the last two is missing */

@@ -1,9 +1,9 @@
 /*
- * fuzz.h: what the fuzz targets share. A target is fuzz_<name>.c, which defines
- * LLVMFuzzerTestOneInput: whatever the bytes, it returns, and what it requires holds.
+ * fuzz.h: shared by the fuzz targets. A target is fuzz_<name>.c, which defines
+ * LLVMFuzzerTestOneInput. It returns for any input, and its requirements hold.
  *
  * The same file is built twice: with libFuzzer (preset fuzz, run by tools/fuzz), and with replay.c,
- * which runs the kept corpus through it as a test in the other presets.
+ * which runs the stored corpus as a test in the other presets.
  */
 #ifndef GRRL_FUZZ_H
 #define GRRL_FUZZ_H
@@ -32,7 +32,7 @@ static inline void fuzz_require(bool holds, const char *what, const char *file, 
 
 #define REQUIRE(condition) fuzz_require(condition, #condition, __FILE__, __LINE__)
 
-/* Reads an input from its front; zeros beyond the end. */
+/* Reads an input from the front; zeros beyond the end. */
 struct fuzz_input {
     const uint8_t *data;
     size_t left;

@@ -44,7 +44,7 @@ static struct grrl_context random_context(void)
 {
     struct grrl_context context;
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++) {
-        uint32_t values = grrl_context_most[i] + 1u;
+        uint32_t values = grrl_context_max[i] + 1u;
         context.part[i] = (uint8_t)grrl_random_below(&f.random, values < 2 ? values : 2);
     }
     return context;

@@ -32,7 +32,7 @@ static void test_closest_are_kept(void **state)
         for (uint32_t i = 0; i < n; i++) { /* 7919 is prime: each number once, in no order */
             offers[i].distance = grrl_random_below(&random, farthest + 1);
             offers[i].state = round % 2 == 0 ? i : i * 7919 % MANY;
-            if (grrl_closest_wants(&closest, offers[i].distance, offers[i].state))
+            if (grrl_closest_accepts(&closest, offers[i].distance, offers[i].state))
                 grrl_closest_add(&closest, offers[i].distance, offers[i].state);
         }
         qsort(offers, n, sizeof offers[0], compare);

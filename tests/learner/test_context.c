@@ -70,7 +70,7 @@ static void a_context_says_what_is_around_the_link(void **state)
 {
     (void)state;
     struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     struct grrl_context contexts[GRRL_DIRECTIONS];
     describe(&model, 1, contexts);
     static const uint8_t slant[GRRL_DIRECTIONS] = {0, 1, 2, 0, 1, 2}; /* 0 45 90 180 225 270 */
@@ -90,7 +90,7 @@ static void a_context_says_what_is_around_the_link(void **state)
         contexts[0].part[GRRL_CONTEXT_NEIGHBOURS] + contexts[3].part[GRRL_CONTEXT_NEIGHBOURS], 3);
     assert_int_equal(contexts[0].part[GRRL_CONTEXT_LONGER], 0);
     for (uint8_t i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        assert_true(contexts[0].part[i] <= grrl_context_most[i]);
+        assert_true(contexts[0].part[i] <= grrl_context_max[i]);
     assert_int_equal(grrl_context_of(&attempts, &model, LARGE_M, 3, contexts), GRRL_ERR_ARGUMENT);
 }
 
@@ -98,7 +98,7 @@ static void an_object_may_be_turned_and_mirrored(void **state)
 {
     (void)state;
     struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     for (uint8_t body = 0; body < 3; body++) {
         struct grrl_context plain[GRRL_DIRECTIONS];
         describe(&model, body, plain);
@@ -116,7 +116,7 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     (void)state;
     struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
     struct grrl_context contexts[GRRL_DIRECTIONS];
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     for (int i = 0; i < 5; i++)
         grrl_attempts_add(&attempts, model.body[1].number, 2);
     grrl_attempts_add(&attempts, model.body[1].number, 0);
@@ -129,20 +129,20 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     describe(&model, 0, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
     model.body[0].length_m *= 2.0f; /* another link's business */
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 3);
     model.n_joints = 1; /* this one's */
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
     grrl_attempts_add(&attempts, model.body[1].number, 2);
     model.body[1].number = 7; /* gone, and somebody else in its place */
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
     model.body[1].number = 2;
-    grrl_attempts_look(&attempts, &model, LARGE_M);
+    grrl_attempts_update(&attempts, &model, LARGE_M);
     describe(&model, 1, contexts);
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
 }

@@ -430,7 +430,7 @@ static void every_policy_is_found_by_its_name(void **state)
         assert_true(strlen((*type)->name) < GRRL_POLICY_NAME_BYTES);
         assert_true((*type)->config_bytes <= GRRL_POLICY_CONFIG_BYTES);
     }
-    assert_int_equal(n, 4);
+    assert_true(n >= 4);
     assert_ptr_equal(grrl_policies[0], &grrl_policy_learn);
     assert_null(grrl_policy_find("nobody"));
     assert_null(grrl_policy_find(""));

@@ -37,7 +37,7 @@ line=$(grep '^line: ' noisy-agent.txt)
 echo "$line"
 [[ $line =~ damaged\ frames:\ ([0-9]+)\ out,\ ([0-9]+)\ in ]] || fail "no count of damaged frames"
 [ "${BASH_REMATCH[1]}" -gt 20 ] && [ "${BASH_REMATCH[2]}" -gt 5 ] || fail "the noise was too weak"
-grep -q 'damaged frames: 0 out, 0 in; 0 requests sent again, 0 answers' clean-agent.txt ||
+grep -q 'damaged frames: 0 out, 0 in; 0 requests resent, 0 surplus answers' clean-agent.txt ||
     fail "damage on a clean line"
 
 # The bridge has no learning in it; the agent has, so that these names mean something.
@@ -72,7 +72,7 @@ expect() {
 }
 expect 0 'Usage: grrl-bridge' "$BRIDGE" --help
 expect 0 'grrl-bridge [0-9]' "$BRIDGE" --version
-expect 2 'serial is needed' "$BRIDGE"
+expect 2 'serial is required' "$BRIDGE"
 expect 2 'a name of 1 to 15' "$BRIDGE" --serial x --policy much-longer-than-a-name
 expect 2 'must be a whole number from 0' "$BRIDGE" --serial x --seed -1
 expect 2 'no arguments' "$BRIDGE" --serial x y
@@ -81,4 +81,4 @@ expect 1 'start the controller first' "$BRIDGE" --serial ./none.socket --lcm-url
 : >file
 expect 1 'file' "$BRIDGE" --serial ./file --lcm-url "$url"
 expect 2 'must be a whole number' "$CONTROLLER" --socket x --damage few
-expect 2 'socket is needed' "$CONTROLLER"
+expect 2 'socket is required' "$CONTROLLER"

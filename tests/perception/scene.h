@@ -1,7 +1,6 @@
 /*
- * scene.h: keyframes of bodies whose motion is known, put into perception by hand, and the few
- * things in double precision that the slow references of these tests share. Included after
- * cmocka.h.
+ * scene.h: writes keyframes of bodies with known motion directly into perception, and offers the
+ * double-precision helpers that the slow references of these tests share. Include after cmocka.h.
  *
  * Random tests take their seed from the environment variable GRRL_TEST_SEED, or a fixed one, and
  * print it at the start.
@@ -22,7 +21,7 @@ struct point {
     double y;
 };
 
-/* A turn by the angle whose cosine and sine are c and s, then a shift by p. */
+/* Rotates by the angle with cosine c and sine s, then translates by p. */
 struct placed {
     struct point p;
     double c;
@@ -32,7 +31,7 @@ struct placed {
 static struct grrl_perception scene;
 static struct grrl_random scene_random;
 
-/* The truth: where each body is in each keyframe, and each feature on its body. */
+/* The truth: the pose of each body in each keyframe, and each feature's place on its body. */
 static struct placed scene_body[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
 static struct point scene_shape[GRRL_MAX_FEATURES];
 
@@ -49,7 +48,7 @@ static inline double scene_uniform(double low, double high)
     return low + (high - low) * (double)grrl_random_uniform(&scene_random);
 }
 
-/* low to high, both included. */
+/* A random integer from low to high, inclusive. */
 static inline int scene_int(int low, int high)
 {
     return low + (int)grrl_random_below(&scene_random, (uint32_t)(high - low + 1));
@@ -105,21 +104,23 @@ static inline struct point to_local(struct placed at, struct point world)
     return (struct point){at.c * d.x + at.s * d.y, at.c * d.y - at.s * d.x};
 }
 
-/* b as seen from a. */
+/* The pose of b in the frame of a. */
 static inline struct placed seen_from(struct placed a, struct placed b)
 {
     return (struct placed){to_local(a, b.p), a.c * b.c + a.s * b.s, a.c * b.s - a.s * b.c};
 }
 
-/* a, then b in the frame of a. */
+/* Applies a, then b in the frame of a. */
 static inline struct placed then(struct placed a, struct placed b)
 {
     return (struct placed){to_world(a, b.p), a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
 }
 
-/* An empty table, with keyframes in which nothing is seen; every third at rest, and the first. */
-static inline void scene_start(int n_keyframes)
+/* An empty table with keyframes that see nothing; the first and every third are at rest. Returns how
+ * many there are: as many as asked for, where they fit. */
+static inline int scene_start(int n_keyframes)
 {
+    n_keyframes = n_keyframes < GRRL_MAX_KEYFRAMES ? n_keyframes : GRRL_MAX_KEYFRAMES;
     memset(&scene, 0, sizeof scene);
     scene.config = (struct grrl_perception_config){.noise_m = 0.0007f,
                                                    .model_error_m = 0.0001f,
@@ -139,6 +140,7 @@ static inline void scene_start(int n_keyframes)
         for (int b = 0; b < GRRL_MAX_LINKS; b++)
             scene_body[k][b] = place(0.0, 0.0, 0.0);
     }
+    return n_keyframes;
 }
 
 static inline uint16_t scene_add_feature(uint8_t body, double x, double y)
@@ -150,7 +152,7 @@ static inline uint16_t scene_add_feature(uint8_t body, double x, double y)
     return slot;
 }
 
-/* A link of 130 mm with n features, the last body. */
+/* Adds a link of 130 mm with n features; returns the index of the body, the last one. */
 static inline uint8_t scene_add_body(int n)
 {
     uint8_t body = scene.n_bodies++;
@@ -160,7 +162,7 @@ static inline uint8_t scene_add_body(int n)
     return body;
 }
 
-/* A random walk of a body: steps of so many metres and radians at most. */
+/* Moves a body in a random walk: steps of at most this many metres and radians. */
 static inline void scene_wander(int body, double shift, double turn)
 {
     double x = scene_uniform(-0.3, 0.3);
@@ -174,8 +176,8 @@ static inline void scene_wander(int body, double shift, double turn)
     }
 }
 
-/* Fills the keyframes: features are missing at random, the others averages of 1 to 60 frames of the
- * configured noise times `noise`. Features of no body stay where they are. */
+/* Fills the keyframes. Features are missing at random; the others are averages of 1 to 60 frames
+ * with `noise` times the configured noise. Features of no body stay in place. */
 static inline void scene_see(double noise, double missing)
 {
     for (int k = 0; k < scene.n_keyframes; k++) {
@@ -203,7 +205,7 @@ static inline void scene_fit(void)
     }
 }
 
-/* The two squares that everything is measured by. */
+/* The two variances used as the unit of all errors. */
 static inline double noise_square(void)
 {
     return (double)scene.config.noise_m * (double)scene.config.noise_m;
@@ -233,7 +235,7 @@ static inline bool is_near(double a, double b, double tolerance)
             fail_msg("%s:%d: " #a " is %.9g instead of %.9g", __FILE__, __LINE__, near_a, near_b); \
     } while (0)
 
-/* Places, in metres. */
+/* Compares positions, in metres. */
 #define assert_at(a, b, tolerance_m)                                                               \
     do {                                                                                           \
         struct point at_a = point_of(a);                                                           \

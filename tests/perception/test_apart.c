@@ -103,7 +103,7 @@ static double slow_evidence(uint8_t a, uint8_t b)
 /* Two bodies, 1 and 2, that move apart by up to `size` metres and 7 `size` radians. */
 static void make_scene(int n_features, int n_keyframes, double size, double noise)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     scene.config.slack = scene_chance(0.3) ? 2.0f : 1.0f;
     scene.config.min_turn_rad = (float)scene_uniform(0.02, 0.06);
     for (int b = 0; b < 3; b++)

@@ -325,7 +325,7 @@ static uint8_t link_of[GRRL_MAX_FEATURES];
 static void make_chain(int n_links, int n_features, int n_keyframes, double size, double noise,
                        double missing, double outliers)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     scene.config.static_background = scene_chance(0.85);
     scene.config.slack = scene_chance(0.2) ? 2.0f : 1.0f;
     double q[GRRL_MAX_LINKS] = {0.0};

@@ -50,7 +50,7 @@ static double aside_m = 0.05; /* of the part from the rest: they lie across one 
 static void make_two_in_one(int n, int apart, int n_keyframes, double noise, double shift,
                             double turn)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     uint8_t whole = scene_add_body(n - apart);
     scene_wander(whole, 0.01, 0.1);
     if (apart > 0) {
@@ -291,7 +291,7 @@ static void largest_sets_of_random_bodies(void **state)
         same += check_find();
     }
     print_message("%d of 200 the same\n", same);
-    assert_true(same >= 198);
+    assert_true(same >= 199);
 }
 
 static void largest_sets_at_capacity(void **state)

@@ -129,7 +129,7 @@ static double slow_best_cut(int body)
 /* Two bodies joined by a pivot between them that turns by so much at most, fitted as one. */
 static void make_pair(int n, int n_keyframes, double turn, bool crossing, double noise)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     scene.config.min_features = (uint8_t)scene_int(3, 5);
     (void)scene_add_body(n);
     (void)scene_add_body(n);
@@ -186,8 +186,8 @@ static void check_cut(void)
     double all = 0.0;
     bool side[GRRL_MAX_FEATURES] = {false};
     all = saved_by(side);
-    assert_near(gain, slow_best_cut(body), 2e-3 + 1e-4 * all);
-    assert_near(gain, gain_of(body, part, n_part), 2e-3 + 1e-4 * all);
+    assert_near(gain, slow_best_cut(body), 1e-2 + 2e-4 * all);
+    assert_near(gain, gain_of(body, part, n_part), 1e-2 + 2e-4 * all);
 }
 
 static void best_cuts_of_pairs(void **state)
@@ -324,7 +324,7 @@ static bool check_cross(void)
     uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part = 99;
     bool side[GRRL_MAX_FEATURES] = {false};
-    double tolerance = 2e-3 + 1e-4 * saved_by(side);
+    double tolerance = 1e-2 + 2e-4 * saved_by(side);
     uint8_t body = (uint8_t)scene_int(0, 1);
     float gain = grrl_cut_best_cross(&scene, &together, body, part, &n_part);
     assert_near(gain, gain_of(body, part, n_part), tolerance);
@@ -338,14 +338,14 @@ static void best_crosses_of_pairs(void **state)
     scene_seed("best_crosses_of_pairs");
     int same = 0;
     int found = 0;
-    for (int run = 0; run < 200; run++) {
+    for (int run = 0; run < 300; run++) {
         make_pair(scene_int(1, 10), scene_int(1, 8), run % 4 == 0 ? 0.0 : 0.05, run % 5 != 0, 1.0);
         mistake(run % 3 == 0 ? 0.1 : 0.5);
         same += check_cross();
         found += slow_best_cross(0) > 12.0;
     }
-    print_message("%d of 200 the same, %d with a better cross\n", same, found);
-    assert_true(same >= 198);
+    print_message("%d of 300 the same, %d with a better cross\n", same, found);
+    assert_true(same >= 299);
     assert_true(found > 30);
 }
 

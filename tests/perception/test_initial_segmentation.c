@@ -89,7 +89,7 @@ static int size_of_group(int slot)
 static void strew(int clusters, int each, int sparse)
 {
     int capacity = GRRL_MAX_FEATURES;
-    scene_start(1);
+    (void)scene_start(1);
     scene.config.min_features = (uint8_t)scene_int(3, 6);
     for (int c = 0; c < clusters; c++) {
         double x = scene_uniform(-0.4, 0.4);
@@ -146,6 +146,23 @@ static void clusters_are_bodies(void **state)
     assert_true(bodies > 150);
 }
 
+/* Points in one place have the least distance, not none. */
+static void points_in_one_place(void **state)
+{
+    (void)state;
+    scene_seed("points_in_one_place");
+    for (int run = 0; run < 40; run++) {
+        (void)scene_start(1);
+        int n = scene_int(6, 30);
+        for (int i = 0; i < n; i++)
+            (void)scene_add_feature(9, 0.01 * (i / 3), 0.0);
+        for (int i = 0; i < n; i++)
+            (void)scene_add_feature(9, scene_uniform(-0.0002, 0.0002), 1.0);
+        scene_see(0.01, 0.0);
+        check_segmentation();
+    }
+}
+
 static void segmentation_at_capacity(void **state)
 {
     (void)state;
@@ -157,7 +174,7 @@ static void segmentation_at_capacity(void **state)
     strew(3, GRRL_MAX_FEATURES / 3, GRRL_MAX_FEATURES);
     check_segmentation();
     for (int run = 0; run < 3; run++) { /* more groups than links */
-        scene_start(1);
+        (void)scene_start(1);
         scene.config.min_features = 3;
         for (int i = 0; i < GRRL_MAX_FEATURES; i++)
             (void)scene_add_feature(9, 0.2 * (i / 5) + 0.001 * (i % 5), 0.002 * (i % 2));
@@ -173,7 +190,7 @@ static void objects_stand_out(void **state)
     (void)state;
     scene_seed("objects_stand_out");
     for (int run = 0; run < 30; run++) {
-        scene_start(1);
+        (void)scene_start(1);
         for (int i = 0; i < 30; i++)
             (void)scene_add_feature(9, 0.004 * i, scene_uniform(-0.015, 0.015));
         for (int i = 0; i < 30; i++)
@@ -228,9 +245,9 @@ static void compact_bodies(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clusters_are_bodies), cmocka_unit_test(segmentation_at_capacity),
-        cmocka_unit_test(objects_stand_out),   cmocka_unit_test(without_background_all_is_one),
-        cmocka_unit_test(compact_bodies),
+        cmocka_unit_test(clusters_are_bodies),           cmocka_unit_test(points_in_one_place),
+        cmocka_unit_test(segmentation_at_capacity),      cmocka_unit_test(objects_stand_out),
+        cmocka_unit_test(without_background_all_is_one), cmocka_unit_test(compact_bodies),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -414,7 +414,7 @@ enum { RIGID, REVOLUTE, PRISMATIC, FREE, MOTIONS };
 /* Body 2 moves against body 1 as told; body 0 stands aside. */
 static void make_pair(int motion, int n_features, int n_keyframes, double size, double noise)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     (void)scene_add_body(3);
     (void)scene_add_body(n_features);
     (void)scene_add_body(n_features);
@@ -454,6 +454,9 @@ static void check_fit_fields(const struct grrl_joint_evidence *e, const struct s
 {
     assert_near(e->fit.excess, slow->excess, slow->determined ? 0.02 : 0.5);
     assert_int_equal(e->fit.excited, slow->excited);
+    double prior = (double)scene.config.pivot_scale_m + slow_half_extent(e->b);
+    assert_true(e->fit.point_variance > 0.0f);
+    assert_true((double)e->fit.point_variance <= 1.001 * prior * prior);
     if (!slow->determined)
         return;
     assert_near(1e3 * (double)e->fit.lower, 1e3 * slow->lower, 5e-3);
@@ -476,17 +479,20 @@ static bool check_weigh(uint8_t a, uint8_t b)
         assert_false(accepted);
         return true;
     }
-    if (doubt < 2e-3)
+    if (doubt < 2e-3 || (!slow.both_determined && slow.odds < 1.0))
         return false;
     assert_int_equal(e.a, a);
     assert_int_equal(e.b, b);
     assert_int_equal(e.type, slow.revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC);
     check_fit_fields(&e, &slow.fit);
     assert_near(e.weight, slow.weight, slow.fit.determined ? 0.02 : 0.5);
-    if (slow.both_determined) {
+    if (slow.both_determined)
         assert_near(e.odds, slow.odds, 0.02);
+    if (!slow.fit.determined)
+        return true;
+    assert_near(e.order, slow.order, 0.03);
+    if (slow.both_determined || slow.odds > 40.0) { /* the other type does not count any more */
         assert_int_equal(accepted, slow.accepted);
-        assert_near(e.order, slow.order, 0.03);
         for (int i = 0; i < 3; i++)
             assert_near(e.p[i], slow.p[i], 0.03);
     }
@@ -502,14 +508,15 @@ static void evidence_of_random_pairs(void **state)
     for (int run = 0; run < 1200; run++) {
         struct grrl_joint_evidence e;
         int motion = run % MOTIONS;
-        make_pair(motion, scene_int(3, 12), scene_int(2, 20), pow(10.0, scene_uniform(-2.0, 0.3)),
+        make_pair(motion, scene_int(3, 12), scene_int(2, run % 8 < 4 ? 5 : 20),
+                  pow(10.0, scene_uniform(-2.0, 0.3)),
                   run % 3 == 0 ? scene_uniform(1.0, 3.0) : 1.0);
         compared[motion] += check_weigh(1, 2);
         accepted[motion] += grrl_joints_weigh(&scene, 1, 2, &e);
     }
     for (int i = 0; i < MOTIONS; i++) {
         print_message("motion %d: %d of 300 compared, %d joints\n", i, compared[i], accepted[i]);
-        assert_true(compared[i] > 250);
+        assert_true(compared[i] > 240);
     }
     assert_true(accepted[REVOLUTE] > 50);
     assert_true(accepted[PRISMATIC] > 30);
@@ -548,7 +555,7 @@ static void pivots_and_axes_are_found(void **state)
     for (int run = 0; run < 40; run++) {
         struct grrl_joint_evidence e;
         bool revolute = run % 2 == 0;
-        scene_start(10);
+        (void)scene_start(10);
         (void)scene_add_body(12);
         (void)scene_add_body(12);
         scene_wander(0, 0.02, 0.3);
@@ -585,7 +592,7 @@ static void rigid_pairs_have_no_joint(void **state)
     int joints = 0;
     for (int run = 0; run < 100; run++) {
         struct grrl_joint_evidence e;
-        scene_start(scene_int(2, GRRL_MAX_KEYFRAMES));
+        (void)scene_start(scene_int(2, GRRL_MAX_KEYFRAMES));
         (void)scene_add_body(10);
         (void)scene_add_body(10);
         scene_wander(0, 0.02, 0.3);

@@ -267,9 +267,9 @@ static void join(struct picture *picture)
 
 static void end_rest(void)
 {
-    struct picture *last = &plain.picture[plain.n_pictures - 1];
     if (plain.window_frames == 0)
         return;
+    struct picture *last = &plain.picture[plain.n_pictures > 0 ? plain.n_pictures - 1 : 0];
     if (plain.rest_open) {
         draw(last, true);
     } else if (plain.n_pictures > 0 && last->at_rest && moved_from(last, 4.0 * noise()) == 0) {
@@ -378,7 +378,7 @@ static float frame_y[MOST_POINTS];
 static void start_stream(int n, double missing, double outliers)
 {
     struct grrl_perception_config config;
-    scene_start(0);
+    (void)scene_start(0);
     config = scene.config;
     config.table_m = 2.0f;
     assert_int_equal(grrl_perception_init(&scene, &config), GRRL_OK);
@@ -511,6 +511,31 @@ static void tracks_at_capacity(void **state)
     assert_int_equal(scene.counts.overflow, 40);
     show(1, 0.0, false);
     assert_int_equal(scene.counts.overflow, 40);
+    /* but for those that one does */
+    start_stream(MOST_IDS, 0.0, 0.0);
+    stream.wrong = 0.0;
+    stream.shown = 5;
+    show(5, 0.0, false);
+    stream.shown = GRRL_MAX_FEATURES;
+    show(1, 0.0, true);
+    stream.first = 40;
+    show(4, 0.0, false);
+    assert_int_equal(scene.n_keyframes, 1);
+    assert_int_equal(scene.counts.overflow, 40 + 3 * 5);
+    /* one frame of a rest is enough to be remembered by */
+    start_stream(MOST_IDS, 0.0, 0.0);
+    stream.wrong = 0.0;
+    stream.shown = GRRL_MAX_FEATURES;
+    show(1, 0.0, false);
+    show(1, 0.0, true);
+    stream.first = 40;
+    show(4, 0.0, false);
+    assert_int_equal(scene.counts.overflow, 4 * 40);
+    /* nothing to be seen */
+    start_stream(1, 0.0, 0.0);
+    stream.shown = 0;
+    show(5, 0.0, false);
+    update();
     start_stream(1, 0.0, 0.0);
     update();
     run_stream(20);
@@ -586,7 +611,7 @@ static void configurations_of_a_tracker_and_a_camera(void **state)
     struct grrl_perception_config camera;
     grrl_perception_config_default(&tracker);
     grrl_perception_config_camera(&camera, 0.001f);
-    scene_start(0);
+    (void)scene_start(0);
     const float *a = &tracker.noise_m;
     const float *b = &scene.config.noise_m;
     for (int i = 0; i < 10; i++)

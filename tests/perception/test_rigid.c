@@ -193,7 +193,7 @@ static struct slow_pose slow_poses[GRRL_MAX_KEYFRAMES];
 static void check_fit(int n, int n_keyframes, double noise, double missing, int stride)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     int others = (GRRL_MAX_FEATURES - n) / 2;
     (void)scene_add_body(others < 5 ? others : 5);
     uint8_t body = scene_add_body(n);
@@ -238,7 +238,7 @@ static void exact_points_give_the_true_motion(void **state)
     (void)state;
     scene_seed("exact_points_give_the_true_motion");
     for (int run = 0; run < 20; run++) {
-        scene_start(6);
+        (void)scene_start(6);
         (void)scene_add_body(9);
         scene_wander(0, 0.1, 1.0);
         scene_see(0.0, 0.2);
@@ -258,7 +258,7 @@ static void exact_points_give_the_true_motion(void **state)
 static void points_in_one_place_have_no_pose(void **state)
 {
     (void)state;
-    scene_start(2);
+    (void)scene_start(2);
     (void)scene_add_body(3);
     for (int i = 0; i < 3; i++)
         scene_shape[i] = (struct point){0.25, 0.5};
@@ -319,7 +319,7 @@ static struct slow_pose slow_refit(int k, const uint16_t *slots, int n, const st
 static void check_refit(int n, int n_keyframes, double distance)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
-    scene_start(n_keyframes);
+    n_keyframes = scene_start(n_keyframes);
     uint8_t body = scene_add_body(n);
     scene_wander(body, 0.02, 0.3);
     scene_see(1.0, 0.1);
@@ -354,7 +354,7 @@ static void places_and_costs(void **state)
     (void)state;
     scene_seed("places_and_costs");
     for (int run = 0; run < 60; run++) {
-        scene_start(scene_int(1, GRRL_MAX_KEYFRAMES));
+        (void)scene_start(scene_int(1, GRRL_MAX_KEYFRAMES));
         scene.config.model_error_m = (float)scene_uniform(0.0001, 0.001);
         (void)scene_add_body(scene_int(2, 10));
         (void)scene_add_body(scene_int(2, 10));

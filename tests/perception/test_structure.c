@@ -67,7 +67,7 @@ static struct grrl_joint_evidence random_evidence(uint8_t a, uint8_t b)
 /* Random bodies, the evidence of each pair, and where the last keyframe saw what. */
 static void make_scene(int n_bodies, int n_features, double joined)
 {
-    scene_start(scene_int(1, 3));
+    (void)scene_start(scene_int(1, 3));
     for (int b = 0; b < n_bodies; b++)
         scene_wander(scene_add_body(scene_int(1, n_features)), 0.01, 0.1);
     while (scene.n_slots + 2 < GRRL_MAX_FEATURES && scene_chance(0.7))

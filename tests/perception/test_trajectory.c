@@ -223,6 +223,11 @@ static void test_what_is_refused(void **state)
         rows[7] = i == 0 ? NAN : i == 1 ? INFINITY : -1001.0f;
         assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NUMBER);
     }
+    for (int i = 0; i < 4; i++) { /* a kilometre, and more */
+        rows[7] = (i % 2 == 0 ? 1000.0f : 1000.1f) * (i < 2 ? 1.0f : -1.0f);
+        enum grrl_status status = grrl_trajectory_fit_of(&trajectory, &config, &result);
+        assert_int_equal(status == GRRL_ERR_NUMBER, i % 2 == 1);
+    }
     memset(rows, 0, sizeof rows);
     assert_int_equal(grrl_trajectory_fit_of(&trajectory, &config, &result), GRRL_ERR_NONE);
 }

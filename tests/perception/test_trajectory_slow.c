@@ -317,11 +317,13 @@ static void put(int i, double x, double y, double noise)
             (float)(origin[k] + x * right[k] + y * up[k] + noise * scene_normal());
 }
 
+/* At a speed that changes, so that there are more samples at one end. */
 static void make_arc(int n, double radius, double turn, double noise, double outliers)
 {
+    double skew = scene_uniform(1.0, 2.0);
     trajectory.n = (uint32_t)n;
     for (int i = 0; i < n; i++) {
-        double angle = 0.7 + turn * i / (n - 1);
+        double angle = 0.7 + turn * pow((double)i / (n - 1), skew);
         put(i, radius * cos(angle), radius * sin(angle), noise);
         if (scene_chance(outliers))
             rows[i * trajectory.dimensions] += (float)scene_uniform(-0.2, 0.2);

@@ -54,7 +54,7 @@ public:
         for (Way &way : ways_) {
             way.subscription = lcm_subscribe(way.from, ".*", on_message, &way);
             if (way.subscription == nullptr)
-                throw std::runtime_error("LCM refuses to subscribe");
+                throw std::runtime_error("LCM refused the subscription");
             (void)lcm_subscription_set_queue_capacity(way.subscription, 0);
         }
     }

@@ -1,11 +1,10 @@
 /*
- * disk.h: a disk to pull the plug of, behind the calls of store_file.h.
+ * disk.h: a simulated disk that can lose power, behind the calls of store_file.h.
  *
- * What was written is volatile until its file is synced; a name that was made, moved or removed is
- * volatile until the folder is synced. The plug is pulled at a chosen call; disk_reboot then
- * chooses what of all that is volatile had reached the platter: any selection of the changes of
- * names, and of a file's bytes a prefix, a prefix followed by zeros, or all but one block. Include
- * after cmocka.h.
+ * Written data is volatile until its file is synced. A name that was made, moved or removed is
+ * volatile until the folder is synced. Power fails at a chosen call. disk_reboot then chooses which
+ * of the volatile changes had reached the disk: any subset of the changes of names, and for a
+ * file's bytes a prefix, a prefix followed by zeros, or all but one block. Include after cmocka.h.
  */
 #ifndef GRRL_TESTS_DISK_H
 #define GRRL_TESTS_DISK_H
@@ -23,9 +22,9 @@ enum {
     DISK_NAMES = 8,
     DISK_PATH = 64,
     DISK_CHANGES = 8,
-    DISK_WRITE = 200, /* the most one write takes: the writer has to go on */
+    DISK_WRITE = 200, /* the most that one write accepts, so that the writer must continue */
     DISK_BLOCK = 64,
-    DISK_FOLDER = DISK_FILES /* stands for a file where a descriptor is of the folder */
+    DISK_FOLDER = DISK_FILES /* stands for a file when a descriptor refers to the folder */
 };
 
 struct disk_content {
@@ -40,7 +39,7 @@ struct disk_names {
     } entry[DISK_NAMES];
 };
 
-/* A change of names that the folder's sync makes durable. */
+/* A change of names, made durable by syncing the folder. */
 struct disk_change {
     char from[DISK_PATH]; /* empty: made */
     char to[DISK_PATH];   /* empty: removed */
@@ -60,19 +59,19 @@ struct disk {
         size_t at;
     } open[4];
     long calls;   /* so far */
-    long cut_at;  /* the call at which the plug is pulled, from 0 */
-    size_t torn;  /* if that is a write: bytes that it still wrote */
-    long fail_at; /* the call that fails with ENOSPC, nothing else does */
+    long cut_at;  /* the call at which power fails, from 0 */
+    size_t torn;  /* if that call is a write: the bytes still written */
+    long fail_at; /* the only call that fails with ENOSPC */
     bool off;
-    bool cut_write; /* the call cut was a write of more than `torn` bytes */
-    bool syncs_lie; /* of files: to prove that the test sees it */
+    bool cut_write; /* the failing call was a write of more than `torn` bytes */
+    bool syncs_lie; /* for files: shows that the test detects it */
     bool folder_syncs_lie;
 };
 
-/* How the disk comes back. */
+/* The state in which the disk comes back. */
 struct disk_fate {
-    unsigned changes; /* bit i: change i of names had reached the platter */
-    size_t prefix;    /* bytes of a volatile file that had */
+    unsigned changes; /* bit i: change i of names reached the disk */
+    size_t prefix;    /* bytes of a volatile file that reached the disk */
     bool zeros;       /* the rest of its length reads as zeros */
     size_t hole;      /* offset of a block of zeros; SIZE_MAX: none */
 };
@@ -122,7 +121,7 @@ static inline void disk_record(struct disk *disk, const char *from, const char *
     disk_apply(&disk->names, change);
 }
 
-/* Whether the call works: the plug may be pulled at it, or it may fail. */
+/* Whether the call succeeds: power may fail at it, or the call may fail. */
 static inline bool disk_works(struct disk *disk)
 {
     long call = disk->calls++;
@@ -256,7 +255,7 @@ static inline void disk_init(struct disk *disk)
     disk_power_on(disk);
 }
 
-/* A file that is there for good. */
+/* Puts a durable file on the disk. */
 static inline void disk_put(struct disk *disk, const char *path, const struct disk_content *content)
 {
     int file = disk->n_files++;
@@ -277,7 +276,8 @@ static inline const struct disk_content *disk_content(struct disk *disk, const c
     return file == NULL ? NULL : &disk->now[*file];
 }
 
-/* The disk after the power is back, as *fate has it; the old one is left as it was. */
+/* Makes the disk as it is after power returns, according to *fate; leaves the old
+ * disk unchanged. */
 static inline void disk_reboot(const struct disk *disk, const struct disk_fate *fate,
                                struct disk *after)
 {

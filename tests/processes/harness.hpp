@@ -52,6 +52,7 @@ struct Outcome {
     std::string notes;     /* of all agents and simulators */
     int rival_lessons = 0; /* of the second agent */
     bool blind = false;    /* the simulator gave up */
+    int64_t frozen_us = 0; /* how long a peer stood still while the others had nothing to do */
 };
 
 struct Setup {
@@ -125,12 +126,15 @@ public:
     Outcome finish()
     {
         int idle = 0;
-        for (int64_t step = 0; !node_->finished() && !node_->agent_is_blind(); step++) {
+        for (int64_t step = 0; !node_->finished() && !node_->agent_has_nothing_to_push(); step++) {
             assert_true(step < 5000000);
             idle = handle() ? 0 : idle + 1;
             /* Time passes only when there is nothing to do: the machine is infinitely fast. */
-            if (idle > 0)
+            if (idle > 0) {
+                bool stands = frozen(setup_.freeze_agent_at) || frozen(setup_.freeze_node_at);
+                outcome_.frozen_us += stands ? 5000 : 0;
                 clock_us += 5000;
+            }
             tick();
             if (step % 7 == 0)
                 disturb();
@@ -145,7 +149,7 @@ public:
         outcome_.agent_rejected = last->agent.counts.rejected;
         outcome_.sim_rejected = node_->rejected();
         outcome_.bus = bus_->counts();
-        outcome_.blind = node_->agent_is_blind();
+        outcome_.blind = node_->agent_has_nothing_to_push();
         return outcome_;
     }
 

@@ -225,7 +225,7 @@ void an_agent_with_nothing_to_push_is_shown_more_but_not_for_ever(void **)
     Puppet puppet;
     for (int look = 0; look < 10; look++) {
         puppet.settle();
-        assert_false(puppet.node().agent_is_blind());
+        assert_false(puppet.node().agent_has_nothing_to_push());
         int frames = puppet.frames;
         puppet.send(puppet.answer());
         assert_int_equal(puppet.frames, frames + 1);
@@ -233,10 +233,10 @@ void an_agent_with_nothing_to_push_is_shown_more_but_not_for_ever(void **)
     }
     puppet.settle();
     puppet.send(puppet.answer());
-    assert_true(puppet.node().agent_is_blind());
+    assert_true(puppet.node().agent_has_nothing_to_push());
     puppet.decide(1);
     puppet.send(puppet.push(-0.1f, 0.1f)); /* at last */
-    assert_false(puppet.node().agent_is_blind());
+    assert_false(puppet.node().agent_has_nothing_to_push());
 }
 
 void frames_tell_whose_pushes_they_show(void **)

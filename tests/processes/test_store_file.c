@@ -90,7 +90,7 @@ static void learn(struct memory *memory, int from, int to)
         }
         struct grrl_context context;
         for (int part = 0; part < GRRL_CONTEXT_PARTS; part++)
-            context.part[part] = (uint8_t)grrl_random_below(&random, grrl_context_most[part] + 1u);
+            context.part[part] = (uint8_t)grrl_random_below(&random, grrl_context_max[part] + 1u);
         struct grrl_learn_policy *policy = &memory->policy.learn;
         (void)grrl_cases_learn(&policy->cases, &policy->config, &context, 1.0f);
     }

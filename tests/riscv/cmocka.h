@@ -1,6 +1,6 @@
 /*
- * cmocka.h: as much of CMocka's interface as the library's tests use, for machines for which there
- * is no CMocka: it comes compiled for hosts only. A failed assertion ends its test, not the others.
+ * cmocka.h: the part of CMocka's interface that the library's tests use, for machines without
+ * CMocka, which is packaged for hosts only. A failed assertion ends its test, not the others.
  */
 #ifndef CMOCKA_H
 #define CMOCKA_H
@@ -55,6 +55,7 @@ static inline void cmocka_check(int fine, const char *what, const char *file, in
 #define assert_non_null(x) CMOCKA_CHECK((x) != NULL, #x " is not NULL")
 #define assert_int_equal(a, b) CMOCKA_CHECK((uintmax_t)(a) == (uintmax_t)(b), #a " == " #b)
 #define assert_int_not_equal(a, b) CMOCKA_CHECK((uintmax_t)(a) != (uintmax_t)(b), #a " != " #b)
+#define assert_ptr_equal(a, b) CMOCKA_CHECK((const void *)(a) == (const void *)(b), #a " == " #b)
 #define assert_in_range(x, low, high)                                                              \
     CMOCKA_CHECK((uintmax_t)(x) >= (uintmax_t)(low) && (uintmax_t)(x) <= (uintmax_t)(high),        \
                  #x " within " #low ", " #high)

@@ -118,13 +118,14 @@ void bad_descriptions_say_what_would_be_right(void **)
         const char *text;
         const char *part;
     } cases[] = {
-        {"RPX", "1:3: a chain has no letter 'X'; R is a revolute and P a prismatic joint"},
-        {"", "an empty chain"},
+        {"RPX", "1:3: a chain cannot contain 'X'; R is a revolute and P a prismatic joint"},
+        {"", "the chain is empty"},
         {too_long.c_str(), " (GRRL_MAX_LINKS)"},
         {"R(l1, l2", "1:9: expected"},
-        {"foo", "'foo' is no chain such as RPR, no file such as scissors.grrl, and as a term: a "
-                "single link of this name is written L(foo)"},
-        {"l1x", "is written L(l1x)"},
+        {"foo",
+         "'foo' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: "
+         "write a single link of this name as L(foo)"},
+        {"l1x", "as L(l1x)"},
         {"foo bar", "and as a term: 1:5: expected '&' or the end of the text, found 'bar'"},
         {"R(tip, R(blade, tip))", "link tip is joined twice to blade"},
         {"no-such-file.grrl", "no-such-file.grrl: cannot be read"},
@@ -181,7 +182,7 @@ void bad_files_are_told_by_line_and_column(void **)
         const char *text;
         const char *part;
     } cases[] = {
-        {"# nothing\n", "f:1:1: there is no term"},
+        {"# nothing\n", "f:1:1: the file has no term"},
         {"term R(l1, \n", "f:1:"},
         {"  term R(l1, l1)\n", "f:1:"},
         {"link l1 0.1 0.1 0.1\n", "f:1:1: the term must come before"},

@@ -185,7 +185,7 @@ void bad_commands_are_refused(void **)
     bad.timeout_s = std::numeric_limits<double>::infinity();
     assert_contains(world.begin_push(bad), "timeout inf s must be above 0 and at most 10");
     assert_string_equal(world.begin_push(good).c_str(), "");
-    assert_contains(world.begin_push(good), "a push is going on");
+    assert_contains(world.begin_push(good), "a push is in progress");
 }
 
 void bad_parameters_are_refused(void **)

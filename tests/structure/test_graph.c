@@ -122,18 +122,18 @@ static void test_rejected_terms(void **state)
         const char *text;
         const char *message;
     } cases[] = {
-        {"A(l1, 45)", "an action is no structure"},
-        {"L(v1, l1)", "link l1 has a variable for a property"},
-        {"L(v0, l1)", "link l1 has a variable for a property"},
+        {"A(l1, 45)", "an action is not a structure"},
+        {"L(v1, l1)", "link l1 has a variable as a property"},
+        {"L(v0, l1)", "link l1 has a variable as a property"},
         {"R(l1, l1)", "link l1 is joined to itself"},
         {"R(blade1, tip, blade1)", "link blade1 is joined to itself"},
         {"R(blade1, R(tip, blade1))", "link blade1 is joined twice to tip"},
-        {"R(L(s, tip), l2) & L(l, tip)", "link tip is given two sets of properties"},
+        {"R(L(s, tip), l2) & L(l, tip)", "link tip has two sets of properties"},
         {"R(l1, R(l2, l1))", "link l1 is joined twice to l2"},
         {"R(l1, R(l1, l2))", "link l1 is joined to itself"},
         {"R(l1, l2) & P(l2, l1)", "link l2 is joined twice to l1"},
         {"R(l1, l2, l2)", "link l1 is joined twice to l2"},
-        {"R(L(s, l1), l2) & L(l, l1)", "link l1 is given two sets of properties"},
+        {"R(L(s, l1), l2) & L(l, l1)", "link l1 has two sets of properties"},
         {"R(L(s, lb), l2)", "link lb is the background"},
         {"P(lb, lb)", "link lb is joined to itself"},
     };
@@ -186,7 +186,7 @@ static void test_full(void **state)
     struct grrl_term_error error;
     assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
                      GRRL_ERR_FULL);
-    assert_non_null(strstr(error.message, "one more than a structure can have"));
+    assert_non_null(strstr(error.message, "exceeds the maximum number of links"));
 }
 
 /* One link too many because a joint asks for the background, at either end, and one joint too many:
@@ -209,7 +209,7 @@ static void test_full_by_joints(void **state)
                          GRRL_OK);
         assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
                          GRRL_ERR_FULL);
-        assert_string_equal(error.message, "link lb is one more than a structure can have");
+        assert_string_equal(error.message, "link lb exceeds the maximum number of links");
     }
 
     grrl_term_release(store, 1);
@@ -230,7 +230,7 @@ static void test_full_by_joints(void **state)
     assert_int_equal(grrl_term_make(store, GRRL_TERM_AND, joints, n, &all), GRRL_OK);
     assert_int_equal(grrl_graph_from_term(store, all, &s.graph, s.names, NULL, NULL, &error),
                      GRRL_ERR_FULL);
-    assert_non_null(strstr(error.message, "has one joint more than a structure can hold"));
+    assert_non_null(strstr(error.message, "exceeds the maximum number of joints"));
     assert_int_equal(grrl_graph_joint_count(&s.graph), GRRL_MAX_JOINTS);
 }
 

@@ -1,4 +1,4 @@
-# One line of progress from the results so far: runs/POLICY-SEED.csv ..., trial,pushes,outcome.
+# Prints one line of progress from the results so far: runs/POLICY-SEED.csv ..., trial,pushes,outcome.
 # -v finished=, total= (runs), trials= (of a run), elapsed= (s), running= (names of runs)
 BEGIN { FS = "," }
 FNR == 1 {

@@ -1,6 +1,6 @@
-# The table of a demo, and the points of its learning curve, from runs/POLICY-SEED.csv ...:
+# Makes the table of a demo and the points of its learning curve from runs/POLICY-SEED.csv ...:
 # -v object=, trials=, seeds=, curve= (file to write)
-# Every figure is a mean over seeds of a seed's own mean over the trials in question; its interval
+# Every figure is the mean over seeds of each seed's mean over the trials in question; its interval
 # is t(0.975, seeds - 1) * s / sqrt(seeds). Aborted trials do not count.
 BEGIN {
     FS = ","
@@ -24,7 +24,7 @@ $3 == "discovered" || $3 == "capped" {
         capped[policy]++
 }
 
-# The t quantile beyond the table, by its expansion in 1 / df (good to three digits there).
+# The t quantile beyond the table, by its expansion in 1 / df (accurate to three digits there).
 function t(df) {
     return df <= 30 ? t_quantile[df] : 1.95996 + 2.37226 / df + 2.8225 / (df * df)
 }

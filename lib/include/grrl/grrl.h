@@ -1,4 +1,4 @@
-/* grrl.h: everything, room by room; each uses only the rooms above it. */
+/* grrl.h: all public headers, module by module; each module uses only those above it. */
 #ifndef GRRL_GRRL_H
 #define GRRL_GRRL_H
 

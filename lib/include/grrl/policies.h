@@ -1,8 +1,8 @@
 /*
  * policies.h: the policies of the library, one row each.
  *
- * Programs offer what stands here; firmware names the policy it uses (`&grrl_policy_learn`) and
- * links no other. A new policy is a source file that defines its type, and a row.
+ * Programs offer every policy listed here. Firmware names the policy it uses (`&grrl_policy_learn`)
+ * and links no other. A new policy is a source file that defines its type, and a row here.
  */
 #ifndef GRRL_POLICIES_H
 #define GRRL_POLICIES_H
@@ -12,7 +12,7 @@
 
 GRRL_API_BEGIN
 
-/* The first is the default. */
+/* The first row is the default. */
 #define GRRL_POLICIES(ROW)                                                                         \
     ROW(learn)                                                                                     \
     ROW(paper)                                                                                     \
@@ -23,10 +23,10 @@ GRRL_API_BEGIN
 GRRL_POLICIES(GRRL_DECLARE_POLICY)
 #undef GRRL_DECLARE_POLICY
 
-/* All of them, and NULL behind the last. */
+/* All policies, terminated by NULL. */
 extern const struct grrl_policy_type *const grrl_policies[];
 
-/* The policy of this name, or NULL. */
+/* The policy with this name, or NULL. */
 const struct grrl_policy_type *grrl_policy_find(const char *name);
 
 GRRL_API_END

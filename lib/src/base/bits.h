@@ -17,7 +17,7 @@ static inline uint32_t grrl_bits_below(unsigned n)
     return n >= 32 ? UINT32_MAX : grrl_bit(n) - 1u;
 }
 
-/* The smallest element of a set that is not empty. */
+/* The smallest element of a non-empty set. */
 static inline uint8_t grrl_first_bit(uint32_t set)
 {
 #if defined(__GNUC__)
@@ -30,8 +30,8 @@ static inline uint8_t grrl_first_bit(uint32_t set)
 #endif
 }
 
-/* Without a branch, and without the call that a builtin is on a machine with no instruction for it;
- * in shifts and sums alone, which compilers turn into vector instructions. */
+/* Branch-free, and no library call on machines without a popcount instruction. Uses only shifts and
+ * sums, which compilers can vectorise. */
 static inline uint32_t grrl_bit_count(uint32_t set)
 {
     set -= set >> 1 & UINT32_C(0x55555555);
@@ -41,7 +41,7 @@ static inline uint32_t grrl_bit_count(uint32_t set)
     return (set + (set >> 16)) & 0x3fu;
 }
 
-/* Asks for memory that is wanted soon. */
+/* Prefetches memory that will be needed soon. */
 static inline void grrl_prefetch(const void *address)
 {
 #if defined(__GNUC__)

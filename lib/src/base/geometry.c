@@ -8,7 +8,7 @@
 
 /* The polynomials are those of the Cephes library (Moshier), minimax on the reduced ranges. */
 
-/* Beyond this the reduced angle would have no correct digit worth having. */
+/* Beyond this the reduced angle has too few correct digits to be useful. */
 #define MAX_ANGLE_RAD 8192.0f
 
 static uint32_t bits_of(float x)
@@ -36,8 +36,8 @@ static int nearest_int(float x)
 }
 
 /*
- * angle - k pi/2 for the nearest k, in [-pi/4, pi/4]. pi/2 in three parts; the first has 8
- * significant bits, so that its product with k is exact.
+ * Returns angle - k pi/2 for the nearest k, in [-pi/4, pi/4]. pi/2 is split into three parts; the
+ * first has 8 significant bits, so its product with k is exact.
  */
 static float reduce_quarter(float angle_rad, unsigned *quadrant)
 {
@@ -127,7 +127,7 @@ float grrl_exp(float x)
     p = p * r + 1.6666665459e-1f;
     p = p * r + 5.0000001201e-1f;
     float value = 1.0f + (r + r * r * p);
-    int half = n / 2; /* 2^n in two factors: n may be 128, which has no float */
+    int half = n / 2; /* 2^n as two factors: n may be 128, and 2^128 is no float */
     return value * float_of((uint32_t)(127 + half) << 23) *
            float_of((uint32_t)(127 + n - half) << 23);
 }
@@ -186,58 +186,6 @@ bool grrl_is_finite(float x)
     return (bits_of(x) & UINT32_C(0x7f800000)) != UINT32_C(0x7f800000);
 }
 
-struct grrl_vec2 grrl_vec2_add(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return (struct grrl_vec2){a.x + b.x, a.y + b.y};
-}
-
-struct grrl_vec2 grrl_vec2_sub(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return (struct grrl_vec2){a.x - b.x, a.y - b.y};
-}
-
-struct grrl_vec2 grrl_vec2_scale(struct grrl_vec2 a, float factor)
-{
-    return (struct grrl_vec2){a.x * factor, a.y * factor};
-}
-
-float grrl_vec2_dot(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return a.x * b.x + a.y * b.y;
-}
-
-float grrl_vec2_cross(struct grrl_vec2 a, struct grrl_vec2 b)
-{
-    return a.x * b.y - a.y * b.x;
-}
-
-float grrl_vec2_length(struct grrl_vec2 a)
-{
-    return grrl_sqrt(grrl_vec2_dot(a, a));
-}
-
-struct grrl_vec2 grrl_rotate(struct grrl_pose pose, struct grrl_vec2 local)
-{
-    return (struct grrl_vec2){pose.c * local.x - pose.s * local.y,
-                              pose.s * local.x + pose.c * local.y};
-}
-
-struct grrl_vec2 grrl_unrotate(struct grrl_pose pose, struct grrl_vec2 world)
-{
-    return (struct grrl_vec2){pose.c * world.x + pose.s * world.y,
-                              pose.c * world.y - pose.s * world.x};
-}
-
-struct grrl_vec2 grrl_transform(struct grrl_pose pose, struct grrl_vec2 local)
-{
-    return grrl_vec2_add(grrl_rotate(pose, local), pose.p);
-}
-
-struct grrl_vec2 grrl_untransform(struct grrl_pose pose, struct grrl_vec2 world)
-{
-    return grrl_unrotate(pose, grrl_vec2_sub(world, pose.p));
-}
-
 float grrl_wrap_rad(float angle_rad)
 {
     if (!(absolute(angle_rad) <= MAX_ANGLE_RAD))
@@ -266,7 +214,7 @@ void grrl_principal_axes(float xx, float xy, float yy, float *major, float *mino
         *minor = xx > yy ? yy : xx;
         return;
     }
-    float a = xx / scale; /* squares below neither overflow nor vanish */
+    float a = xx / scale; /* the squares below neither overflow nor underflow */
     float b = xy / scale;
     float d = yy / scale;
     float mean = 0.5f * (a + d);
@@ -275,7 +223,7 @@ void grrl_principal_axes(float xx, float xy, float yy, float *major, float *mino
     *major = scale * (mean + root);
     *minor = scale * (mean - root);
     if (root > 0.0f) {
-        /* Of the two rows of (matrix - minor), the one without cancellation. */
+        /* Takes the row of (matrix - minor) that has no cancellation. */
         struct grrl_vec2 v =
             half >= 0.0f ? (struct grrl_vec2){half + root, b} : (struct grrl_vec2){b, root - half};
         *axis = grrl_vec2_scale(v, 1.0f / grrl_vec2_length(v));

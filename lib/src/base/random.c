@@ -21,7 +21,8 @@ uint32_t grrl_random_next(struct grrl_random *random)
 
 uint32_t grrl_random_below(struct grrl_random *random, uint32_t count)
 {
-    uint32_t threshold = (0u - count) % count; /* 2^32 mod count: the values that would bias */
+    uint32_t threshold =
+        (0u - count) % count; /* 2^32 mod count: values below it would cause a bias */
     uint32_t value;
     do {
         value = grrl_random_next(random);

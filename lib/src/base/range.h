@@ -1,4 +1,4 @@
-/* range.h (private): ranges of parameters, and the first one that is out of its range. */
+/* range.h (private): checks parameter ranges and finds the first violation. */
 #ifndef GRRL_BASE_RANGE_H
 #define GRRL_BASE_RANGE_H
 
@@ -7,7 +7,7 @@
 
 #include "grrl/base/status.h"
 
-/* Written so that a NaN is in no range. */
+/* Written so that NaN is never in range. */
 static inline bool grrl_is_within(float x, float low, float high)
 {
     return x >= low && x <= high;
@@ -18,7 +18,8 @@ struct grrl_range_check {
     bool fine;
 };
 
-/* GRRL_ERR_ARGUMENT, and the name in *field if that is not NULL, of the first that is not fine. */
+/* Returns GRRL_ERR_ARGUMENT for the first failed check, and its name in *field if that
+ * is not NULL. */
 static inline enum grrl_status grrl_range_first(const struct grrl_range_check *checks, size_t n,
                                                 const char **field)
 {

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* CRC-32 (IEEE 802.3), bit by bit: a file is small and a table would be a kilobyte. */
+/* CRC-32 (IEEE 802.3), bit by bit: files are small, and a table would take a kilobyte. */
 static uint32_t crc_of(uint32_t crc, const uint8_t *bytes, size_t n)
 {
     crc = ~crc;

@@ -1,11 +1,11 @@
-/* The texts of the statuses. */
+/* The text for each status. */
 #include "grrl/base/status.h"
 
 const char *grrl_status_text(enum grrl_status status)
 {
     switch (status) {
     case GRRL_OK:
-        return "fine";
+        return "success";
     case GRRL_ERR_ARGUMENT:
         return "a parameter is outside its range";
     case GRRL_ERR_FULL:
@@ -19,19 +19,19 @@ const char *grrl_status_text(enum grrl_status status)
     case GRRL_ERR_UNDECIDED:
         return "undecided within the search budget";
     case GRRL_ERR_NONE:
-        return "there is none";
+        return "nothing found";
     case GRRL_ERR_IO:
         return "reading or writing failed";
     case GRRL_ERR_FORMAT:
         return "not a file of this kind";
     case GRRL_ERR_VERSION:
-        return "a file of another version or build";
+        return "a file from another version or build";
     case GRRL_ERR_CORRUPT:
         return "a damaged file";
     case GRRL_ERR_ORDER:
-        return "a call out of order";
+        return "a function was called out of order";
     case GRRL_ERR_POLICY:
-        return "a file of another policy";
+        return "a file from another policy";
     }
-    return "an unknown status";
+    return "unknown status";
 }

@@ -1,8 +1,8 @@
 /*
  * text.h (private): appends to a caller's buffer without stdio.
  *
- * The text is always terminated; `length` counts what the whole text takes, so that a cut is seen
- * by comparing it with the capacity.
+ * The text is always terminated. `length` counts the whole text, so a caller detects truncation by
+ * comparing it with the capacity.
  */
 #ifndef GRRL_TEXT_H
 #define GRRL_TEXT_H

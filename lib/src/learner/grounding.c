@@ -3,17 +3,18 @@
 
 #include "grrl/structure/term.h"
 
-/* Nearer to the middle than this share of the length, a joint says nothing about a link's ends. */
+/* A joint closer to the middle than this share of the length does not belong to either end. */
 #define MIDDLE 0.15f
 
-/* Sides whose lengths differ by less than this share are equally heavy: noise must not decide. */
+/* Sides whose lengths differ by less than this share count as equally heavy, so that noise does not
+ * decide. */
 #define EQUAL_LENGTH 0.05f
 
-/* A start where a feature is in the way is moved back in steps, and no farther than this. */
+/* If a feature blocks the start, the start moves back in these steps, up to this distance. */
 #define BACK_STEP_M 0.005f
 #define BACK_STEPS 80
 
-/* A feature on the edge of the clearance is not in the way. */
+/* A feature exactly at the clearance does not block the start. */
 #define EDGE_M 0.0001f
 
 void grrl_grounding_config_default(struct grrl_grounding_config *config)
@@ -39,7 +40,7 @@ enum grrl_status grrl_grounding_config_check(const struct grrl_grounding_config 
     return fine ? GRRL_OK : GRRL_ERR_ARGUMENT;
 }
 
-/* The bodies that joints connect to those in `from` without passing through those in `without`. */
+/* The bodies that joints connect to `from` without passing through `without`. */
 static uint32_t reach(const struct grrl_model *model, uint32_t from, uint32_t without)
 {
     uint32_t before;
@@ -58,14 +59,14 @@ static uint32_t reach(const struct grrl_model *model, uint32_t from, uint32_t wi
 /* What hangs on one end of a link. */
 struct end {
     uint32_t bodies;
-    uint8_t first_joint; /* the smallest index */
+    uint8_t first_joint; /* lowest index */
     unsigned links;
     float length_m;
 };
 
 /*
- * Where along the axis the joint holds the body: at its pivot, or where the neighbour lies if the
- * pivot is in the middle. A sliding axis is the same everywhere, so only the neighbour tells.
+ * The position along the axis at which the joint holds the body: its pivot, or the neighbour's
+ * position if the pivot is in the middle. A sliding axis has no position, so the neighbour decides.
  */
 static float joint_place(const struct grrl_body *body, const struct grrl_body *neighbour,
                          const struct grrl_joint *joint)
@@ -78,7 +79,7 @@ static float joint_place(const struct grrl_body *body, const struct grrl_body *n
     return grrl_vec2_dot(grrl_vec2_sub(neighbour->centroid_m, body->centroid_m), body->axis);
 }
 
-static void weigh(const struct grrl_model *model, uint8_t body, struct end *end)
+static void measure_end(const struct grrl_model *model, uint8_t body, struct end *end)
 {
     end->bodies = reach(model, end->bodies, UINT32_C(1) << body);
     end->links = 0;
@@ -91,7 +92,7 @@ static void weigh(const struct grrl_model *model, uint8_t body, struct end *end)
     }
 }
 
-/* Whether the far end (against the axis) is the one forward points away from. */
+/* Whether forward points away from the far end (the one against the axis). */
 static bool far_end_holds(const struct end *near, const struct end *far)
 {
     if (near->links != far->links)
@@ -119,12 +120,13 @@ static struct grrl_vec2 forward_axis(const struct grrl_model *model, uint8_t bod
         end->bodies |= UINT32_C(1) << other;
         end->first_joint = j < end->first_joint ? j : end->first_joint;
     }
-    weigh(model, body, &ends[0]);
-    weigh(model, body, &ends[1]);
+    measure_end(model, body, &ends[0]);
+    measure_end(model, body, &ends[1]);
     return far_end_holds(&ends[0], &ends[1]) ? self->axis : grrl_vec2_scale(self->axis, -1.0f);
 }
 
-/* From the body's centroid to that of all features of the rest of its object; zero without one. */
+/* The vector from the body's centroid to that of all features of the rest of its object; zero if
+ * there is no rest. */
 static struct grrl_vec2 towards_rest(const struct grrl_model *model, uint8_t body)
 {
     uint32_t self = UINT32_C(1) << body;
@@ -160,14 +162,14 @@ struct grrl_vec2 grrl_grounding_direction(const struct grrl_link_frame *frame, u
                          grrl_vec2_scale(frame->side, grrl_sin(angle_rad)));
 }
 
-/* Where a body lies along a push: distances from its centroid. */
+/* A body's extent along a push: distances from its centroid. */
 struct span {
     float rear_m;
     float fore_m;
 };
 
-/* The rearmost feature is the one the tool meets: the rearmost within its width, if there is one.
- */
+/* The rearmost feature is the one the tool meets: the rearmost within the tool's width, if there is
+ * one. */
 static struct span span_along(const struct grrl_model *model, uint8_t body,
                               struct grrl_vec2 direction, float radius_m)
 {

@@ -1,4 +1,5 @@
-/* learner.c: the order of calls, rewards, and the policy between perception and grounding. */
+/* learner.c: enforces the order of calls, computes rewards, and connects perception, policy and
+ * grounding. */
 #include "grrl/learner/learner.h"
 
 #include <string.h>
@@ -8,9 +9,9 @@
 enum phase {
     PHASE_IDLE,   /* no trial */
     PHASE_BEGUN,  /* nothing perceived yet */
-    PHASE_READY,  /* to choose */
-    PHASE_ACTING, /* chosen, what came of it not yet perceived */
-    PHASE_DONE    /* perceived, to learn */
+    PHASE_READY,  /* ready to choose */
+    PHASE_ACTING, /* pushed; the outcome is not perceived yet */
+    PHASE_DONE    /* perceived; ready to learn */
 };
 
 void grrl_learner_config_default(struct grrl_learner_config *config)
@@ -28,7 +29,7 @@ enum grrl_status grrl_learner_init(struct grrl_learner *learner,
                                    struct grrl_policy policy)
 {
     if (!(grrl_is_finite(config->large_m) && config->large_m > 0.0f) ||
-        !grrl_is_within(config->trial_reward, 0.0f, GRRL_MOST_TRIAL_REWARD) ||
+        !grrl_is_within(config->trial_reward, 0.0f, GRRL_MAX_TRIAL_REWARD) ||
         grrl_grounding_config_check(&config->grounding) != GRRL_OK ||
         grrl_perception_init(&learner->perception, &config->perception) != GRRL_OK)
         return GRRL_ERR_ARGUMENT;
@@ -67,8 +68,9 @@ void grrl_learner_observe(struct grrl_learner *learner, const struct grrl_frame 
         grrl_perception_observe(&learner->perception, frame, pushing);
 }
 
-/* Links and joints of the state beyond the most seen before in this trial, which become known. */
-static unsigned reveal(struct grrl_learner *learner)
+/* Counts the links and joints beyond the most seen so far in this trial, and records the new
+ * maximum. */
+static unsigned count_revealed(struct grrl_learner *learner)
 {
     unsigned revealed = 0;
     uint8_t joints = (uint8_t)grrl_graph_joint_count(&learner->state);
@@ -93,7 +95,7 @@ enum grrl_status grrl_learner_perceive(struct grrl_learner *learner)
     const struct grrl_model *model = grrl_perception_model(&learner->perception);
     grrl_relational_state_of(model, learner->config.large_m, &learner->state, NULL, NULL);
     if (learner->phase == PHASE_BEGUN || learner->phase == PHASE_READY) {
-        (void)reveal(learner); /* no reward without a push */
+        (void)count_revealed(learner); /* no reward before the first push */
         learner->phase = PHASE_READY;
     } else {
         learner->phase = PHASE_DONE;
@@ -107,7 +109,7 @@ static struct grrl_view view_of(const struct grrl_learner *learner)
                               &learner->state, learner->config.large_m};
 }
 
-/* Turns a choice into a push and remembers it. */
+/* Turns a choice into a push and stores it. */
 static enum grrl_status decide(struct grrl_learner *learner, const struct grrl_choice *choice,
                                struct grrl_decision *decision)
 {
@@ -177,7 +179,7 @@ enum grrl_status grrl_learner_learn(struct grrl_learner *learner, bool ended,
 {
     if (learner->phase != PHASE_DONE)
         return GRRL_ERR_ORDER;
-    float reward = (float)reveal(learner) + (ended ? learner->config.trial_reward : 0.0f);
+    float reward = (float)count_revealed(learner) + (ended ? learner->config.trial_reward : 0.0f);
     *update = (struct grrl_update){.reward = reward, .target = reward, .index = GRRL_NO_ENTRY};
     if (learner->policy.type->learn != NULL) {
         const struct grrl_outcome outcome = {.view = view_of(learner),

@@ -1,4 +1,4 @@
-/* legacy_store.c: reads past the other learner's section in a store of version 0.1.0. */
+/* legacy_store.c: skips the other learner's section in a store of version 0.1.0. */
 #include "learner/legacy_store.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* policy.c: making a policy of any type. */
+/* policy.c: makes a policy of any type. */
 #include "grrl/learner/policy.h"
 
 enum grrl_status grrl_policy_make(const struct grrl_policy_type *type, void *memory, size_t bytes,

@@ -1,4 +1,4 @@
-/* random_policy.c: any push, as likely as any other; it learns nothing. */
+/* random_policy.c: chooses every push with equal probability; learns nothing. */
 #include "grrl/learner/policy.h"
 #include "grrl/structure/term.h"
 
@@ -25,9 +25,9 @@ static void choose(void *self, const struct grrl_view *view, struct grrl_random 
                                    .source = grrl_no_source()};
 }
 
-const struct grrl_policy_type grrl_policy_random = {
+GRRL_POLICY_TYPE grrl_policy_random = {
     .name = "random",
-    .text = "any push, as likely as any other",
+    .text = "every push with equal probability",
     .bytes = bytes,
     .init = init,
     .choose = choose,

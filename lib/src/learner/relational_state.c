@@ -1,4 +1,4 @@
-/* relational_state.c: the model of perception as a labelled graph. */
+/* relational_state.c: perception's model as a labelled graph. */
 #include "grrl/learner/relational_state.h"
 
 #include <string.h>

@@ -65,7 +65,7 @@
 #define ORDER_SCALE 0.4f
 
 /* A range of motion tells a type if it is so many standard deviations of one keyframe, see
- * FAR_SIGMAS in bodies.c. */
+ * FAR_SIGMAS in apart.c. */
 #define EXCITED_SIGMAS 5.0f
 
 #define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */

@@ -29,7 +29,12 @@ static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 }
 
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
-float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight);
+static inline float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
+{
+    float noise = p->config.noise_m;
+    float model = p->config.model_error_m;
+    return noise * noise / (float)weight + model * model;
+}
 
 /*
  * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's

@@ -15,13 +15,6 @@
 
 #define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
 
-float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
-{
-    float noise = p->config.noise_m;
-    float model = p->config.model_error_m;
-    return noise * noise / (float)weight + model * model;
-}
-
 /* Least-squares pose of weighted points (Umeyama 1991, in the plane: no trigonometry needed). */
 static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
                      const struct grrl_vec2 *shape, struct grrl_perception_pose *out)

@@ -1,4 +1,4 @@
-/* Canonical forms by refinement and a search over what it leaves open. */
+/* Canonical forms: colour refinement, then a search where refinement leaves a choice. */
 #include "grrl/structure/canonical.h"
 
 #include <string.h>
@@ -6,24 +6,24 @@
 #include "base/bits.h"
 
 /*
- * An ordered partition of the vertices of a component: cell[s] is the set whose vertices take the
- * positions s .. s + size - 1, 0 where no cell starts. Splitting a cell moves no other one.
+ * An ordered partition of a component's vertices. cell[s] is the set of vertices at positions s ..
+ * s + size - 1, or 0 where no cell starts. Splitting a cell moves no other cell.
  */
 struct partition {
     uint32_t cell[GRRL_MAX_LINKS];
 };
 
-/* A component with its vertices in some order, as rows of joints between positions. */
+/* A component with ordered vertices, as rows of joints between positions. */
 struct leaf {
     uint8_t order[GRRL_MAX_LINKS];
     uint32_t row[GRRL_JOINT_TYPES][GRRL_MAX_LINKS];
 };
 
-/* One level of the search: a partition, one of its cells, and the vertices of it still to try. */
+/* One level of the search: a partition, one of its cells, and that cell's untried vertices. */
 struct level {
     struct partition partition;
     uint8_t start;
-    uint8_t vertex; /* individualised now */
+    uint8_t vertex; /* currently individualised */
     uint32_t untried;
     uint32_t tried;
     uint8_t orbit[GRRL_MAX_LINKS]; /* under automorphisms that fix the vertices of earlier levels */
@@ -33,7 +33,7 @@ struct search {
     const struct grrl_graph *graph;
     grrl_label mask;
     uint32_t vertices; /* of the component */
-    uint32_t core;     /* those on loops or between them */
+    uint32_t core;     /* vertices on loops or between loops */
     uint8_t n;
     uint32_t budget; /* refinements left */
     int depth;       /* levels in use */
@@ -46,13 +46,13 @@ struct search {
 
 /* --- refinement ------------------------------------------------------------------------------- */
 
-/* Splits the cell at `start` by the number of joints of this type into the splitter, few first.
- * Returns the starts of the fragments, 0 if there is just one. */
+/* Splits the cell at `start` by the number of joints of this type into the splitter, lowest count
+ * first. Returns the starts of the fragments, or 0 if the cell stays whole. */
 static uint32_t split_cell(const struct search *search, struct partition *partition, uint8_t start,
                            int type, uint32_t splitter)
 {
     uint32_t by_count[GRRL_MAX_LINKS];
-    uint32_t present = 0; /* counts that occur; those below GRRL_MAX_LINKS are all there are */
+    uint32_t present = 0; /* counts that occur; all are below GRRL_MAX_LINKS */
     for (uint32_t rest = partition->cell[start]; rest != 0; rest &= rest - 1u) {
         uint8_t v = grrl_first_bit(rest);
         unsigned count = grrl_bit_count(search->graph->joined[type][v] & splitter);
@@ -75,9 +75,9 @@ static uint32_t split_cell(const struct search *search, struct partition *partit
 }
 
 /*
- * Splits cells until the vertices of each agree in how many joints of each type lead into every
- * cell. pending: starts of the cells to split by. What happens depends on positions alone, never on
- * the numbers of vertices, so that isomorphic graphs are refined alike.
+ * Splits cells until all vertices of a cell have the same number of joints of each type into every
+ * cell. pending: starts of the cells to split by. The result depends only on positions, never on
+ * vertex numbers, so isomorphic graphs are refined alike.
  */
 static bool refine(struct search *search, struct partition *partition, uint32_t pending)
 {
@@ -104,7 +104,7 @@ static bool refine(struct search *search, struct partition *partition, uint32_t 
     return true;
 }
 
-/* Gives one vertex of a cell the first position of it, then refines. */
+/* Moves one vertex of a cell to the cell's first position, then refines. */
 static bool individualise(struct search *search, struct partition *partition, uint8_t start,
                           uint8_t vertex)
 {
@@ -113,7 +113,7 @@ static bool individualise(struct search *search, struct partition *partition, ui
     return refine(search, partition, grrl_bit(start));
 }
 
-/* The vertices left when links with one joint are taken away again and again. */
+/* The vertices left after repeatedly removing links with at most one joint. */
 static uint32_t find_core(const struct grrl_graph *graph, uint32_t vertices)
 {
     uint32_t core = vertices;
@@ -129,7 +129,7 @@ static uint32_t find_core(const struct grrl_graph *graph, uint32_t vertices)
     return core;
 }
 
-/* Cells by label, vertices outside the core before those in it. */
+/* Cells by label; vertices outside the core come before those in it. */
 static bool first_partition(struct search *search, struct partition *partition)
 {
     memset(partition, 0, sizeof *partition);
@@ -188,8 +188,9 @@ static int compare_rows(const struct leaf *a, const struct leaf *b, uint8_t n)
 }
 
 /*
- * Every vertex of the core has a position of its own. What hangs on it, or the whole component if
- * it is a tree, is a forest, in which vertices of one cell are symmetric: any may come first.
+ * Every vertex of the core has a position of its own. What hangs on the core, or a component that
+ * is a tree, is a forest. Its vertices within one cell are symmetric, so any of them may come
+ * first.
  */
 static bool finish_trees(struct search *search, struct partition *partition)
 {
@@ -204,7 +205,7 @@ static bool finish_trees(struct search *search, struct partition *partition)
 
 /* --- search ----------------------------------------------------------------------------------- */
 
-/* The first of the smallest cells of the core with more than one vertex; n if there is none. */
+/* The first of the smallest core cells with more than one vertex; n if there is none. */
 static uint8_t choose_cell(const struct search *search, const struct partition *partition)
 {
     uint8_t chosen = search->n;
@@ -230,9 +231,9 @@ static void join_orbits(uint8_t *orbit, uint8_t a, uint8_t b)
 }
 
 /*
- * A leaf equal to the best one shows an automorphism. It fixes what the two paths have in common,
- * so it counts for the orbits there; and it maps the part of the tree that was searched through the
- * best leaf onto the part that this leaf belongs to, which is therefore done.
+ * A leaf equal to the best one reveals an automorphism. It fixes the common part of the two paths,
+ * so it merges orbits there. It also maps the subtree already searched through the best leaf onto
+ * the subtree of this leaf, so this subtree is done.
  */
 static void use_automorphism(struct search *search, const struct leaf *leaf)
 {
@@ -268,7 +269,7 @@ static bool visit_leaf(struct search *search, struct partition *partition)
     return true;
 }
 
-/* Opens a level for the partition, or visits it as a leaf. */
+/* Opens a level for the partition, or visits it if it is a leaf. */
 static bool descend(struct search *search, struct partition *partition)
 {
     uint8_t start = choose_cell(search, partition);
@@ -284,7 +285,7 @@ static bool descend(struct search *search, struct partition *partition)
     return true;
 }
 
-/* Whether an automorphism maps this vertex onto one that was tried at this level. */
+/* Whether an automorphism maps this vertex onto one already tried at this level. */
 static bool is_symmetric(const struct level *level, uint8_t vertex)
 {
     for (uint32_t rest = level->tried; rest != 0; rest &= rest - 1u)
@@ -293,7 +294,7 @@ static bool is_symmetric(const struct level *level, uint8_t vertex)
     return false;
 }
 
-/* The canonical order of one component in search->best. */
+/* Finds the canonical order of one component, in search->best. */
 static enum grrl_status search_component(struct search *search, uint32_t vertices)
 {
     search->vertices = vertices;
@@ -323,7 +324,7 @@ static enum grrl_status search_component(struct search *search, uint32_t vertice
 
 /* --- components side by side ------------------------------------------------------------------ */
 
-/* By size, labels and rows: two components compare equal exactly if they are isomorphic. */
+/* By size, labels and rows. Two components compare equal if and only if they are isomorphic. */
 static int compare_components(const struct search *search, const uint8_t *a, uint8_t n_a,
                               const uint8_t *b, uint8_t n_b)
 {
@@ -344,7 +345,7 @@ static int compare_components(const struct search *search, const uint8_t *a, uin
     return compare_rows(&leaf_a, &leaf_b, n_a);
 }
 
-/* Puts the component in search->best among the sorted ones before it in `order`. */
+/* Inserts the component in search->best among the sorted ones before it in `order`. */
 static void insert_component(const struct search *search, uint8_t *order, uint8_t *sizes,
                              uint8_t *n_components, uint8_t *n_placed)
 {
@@ -365,7 +366,7 @@ static void insert_component(const struct search *search, uint8_t *order, uint8_
     *n_placed = (uint8_t)(*n_placed + search->n);
 }
 
-/* FNV-1a over the bytes of a number, the lowest first on every machine. */
+/* FNV-1a over the bytes of a number, lowest byte first on every machine. */
 static uint32_t hash_number(uint32_t hash, uint64_t number, int bytes)
 {
     for (int i = 0; i < bytes; i++) {

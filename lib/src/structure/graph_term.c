@@ -1,4 +1,4 @@
-/* Terms to graphs, and graphs to terms that nest where they can. */
+/* Converts terms to graphs, and graphs to terms that nest where possible. */
 #include <string.h>
 
 #include "base/bits.h"
@@ -13,7 +13,7 @@ struct reader {
     struct grrl_name *names;
     struct grrl_edge *edges;
     uint8_t n_edges;
-    uint32_t described; /* vertices whose properties were written */
+    uint32_t described; /* vertices whose properties have appeared */
     struct grrl_term_error *error;
 };
 
@@ -40,7 +40,7 @@ static enum grrl_status reject(struct reader *reader, enum grrl_status status,
     return status;
 }
 
-/* The vertex with this name, added if there is none. */
+/* Finds the vertex with this name, or adds it. */
 static enum grrl_status find_vertex(struct reader *reader, struct grrl_name name, uint8_t *vertex)
 {
     struct grrl_graph *graph = reader->graph;
@@ -52,7 +52,7 @@ static enum grrl_status find_vertex(struct reader *reader, struct grrl_name name
     }
     grrl_label label = name.kind == GRRL_NAME_BACKGROUND ? GRRL_LABEL_BACKGROUND : 0;
     if (grrl_graph_add_link(graph, label, vertex) != GRRL_OK)
-        return reject(reader, GRRL_ERR_FULL, name, "is one more than a structure can have");
+        return reject(reader, GRRL_ERR_FULL, name, "exceeds the maximum number of links");
     reader->names[*vertex] = name;
     return GRRL_OK;
 }
@@ -64,7 +64,7 @@ static enum grrl_status read_link(struct reader *reader, const struct grrl_term_
             return reject(reader, GRRL_ERR_STRUCTURE, node->name,
                           "is the background, without "
                           "properties");
-        return GRRL_OK; /* a vertex only when a joint asks for it */
+        return GRRL_OK; /* it becomes a vertex only when a joint needs it */
     }
     uint8_t vertex;
     enum grrl_status status = find_vertex(reader, node->name, &vertex);
@@ -74,11 +74,11 @@ static enum grrl_status read_link(struct reader *reader, const struct grrl_term_
     for (uint8_t i = 0; i < node->n_properties; i++) {
         if (node->properties[i] >= GRRL_PROPERTY_VARIABLE)
             return reject(reader, GRRL_ERR_STRUCTURE, node->name,
-                          "has a variable for a property, which no graph can hold");
+                          "has a variable as a property, which a graph cannot hold");
         label |= (grrl_label)node->properties[i] << (8 * i);
     }
     if ((reader->described & grrl_bit(vertex)) != 0 && reader->graph->label[vertex] != label)
-        return reject(reader, GRRL_ERR_STRUCTURE, node->name, "is given two sets of properties");
+        return reject(reader, GRRL_ERR_STRUCTURE, node->name, "has two sets of properties");
     reader->described |= grrl_bit(vertex);
     reader->graph->label[vertex] = label;
     return GRRL_OK;
@@ -96,7 +96,7 @@ static enum grrl_status join(struct reader *reader, struct grrl_name from, struc
         return status;
     status = grrl_graph_add_joint(reader->graph, a, b, type);
     if (status == GRRL_ERR_FULL)
-        return reject(reader, status, from, "has one joint more than a structure can hold");
+        return reject(reader, status, from, "exceeds the maximum number of joints");
     if (status != GRRL_OK) {
         struct grrl_text message =
             complain(reader, from, a == b ? "is joined to itself" : "is joined twice to ");
@@ -110,8 +110,8 @@ static enum grrl_status join(struct reader *reader, struct grrl_name from, struc
     return GRRL_OK;
 }
 
-/* The joints of a relation: from the link written last in its first argument (its last argument at
- * every level down) to the one written first in each further argument. */
+/* Adds the joints of a relation. They lead from the link written last in its first argument (the
+ * last argument at every level down) to the link written first in each further argument. */
 static enum grrl_status read_relation(struct reader *reader, const struct grrl_term_node *node)
 {
     const struct grrl_term_node *nodes = reader->store->nodes;
@@ -148,11 +148,11 @@ enum grrl_status grrl_graph_from_term(const struct grrl_term_store *store, grrl_
                             .names = names,
                             .edges = edges,
                             .error = error != NULL ? error : &unwanted};
-    struct grrl_name nobody = {GRRL_NAME_NONE, 0};
+    struct grrl_name no_name = {GRRL_NAME_NONE, 0};
     if (!grrl_term_valid(store, term))
-        return reject(&reader, GRRL_ERR_ARGUMENT, nobody, "no term of this store");
+        return reject(&reader, GRRL_ERR_ARGUMENT, no_name, "not a term of this store");
     if (store->nodes[term].kind == GRRL_TERM_ACTION)
-        return reject(&reader, GRRL_ERR_STRUCTURE, nobody, "an action is no structure");
+        return reject(&reader, GRRL_ERR_STRUCTURE, no_name, "an action is not a structure");
     grrl_graph_clear(graph);
     struct grrl_walk walk;
     grrl_term_walk_begin(&walk, store, term);
@@ -171,10 +171,10 @@ enum grrl_status grrl_graph_from_term(const struct grrl_term_store *store, grrl_
 
 /* --- a graph as a term ------------------------------------------------------------------------ */
 
-/* The term of one connected set of links written so far. */
+/* The term for one connected set of links written so far. */
 struct piece {
     grrl_term term; /* 0: a single link not written yet */
-    uint8_t first;  /* the links written first and last */
+    uint8_t first;  /* the links that appear first and last in the term */
     uint8_t last;
 };
 
@@ -182,12 +182,12 @@ struct writer {
     struct grrl_term_store *store;
     const struct grrl_graph *graph;
     const struct grrl_name *names;
-    uint32_t written;                 /* links that stand in a term already */
+    uint32_t written;                 /* links that already appear in a term */
     uint8_t piece_of[GRRL_MAX_LINKS]; /* an index into pieces */
     struct piece pieces[GRRL_MAX_LINKS];
 };
 
-/* A link in full the first time, by its bare name from then on. */
+/* Writes a link in full the first time, and by its bare name afterwards. */
 static enum grrl_status write_link(struct writer *writer, uint8_t vertex, grrl_term *term)
 {
     grrl_property properties[GRRL_MAX_PROPERTIES] = {0};
@@ -212,13 +212,13 @@ static enum grrl_status make_pair(struct writer *writer, enum grrl_term_kind kin
     return grrl_term_make(writer->store, kind, arguments, 2, term);
 }
 
-/* Room for one relation more around a piece and for the D around everything. */
+/* Whether one more relation around a piece, and the D around everything, stay within the depth. */
 static bool may_nest(const struct writer *writer, const struct piece *piece)
 {
     return piece->term == 0 || writer->store->nodes[piece->term].depth + 2 <= GRRL_MAX_TERM_DEPTH;
 }
 
-/* kind(a, b) becomes the piece *joined. */
+/* Makes kind(a, b) the piece *joined. */
 static enum grrl_status nest(struct writer *writer, enum grrl_term_kind kind, struct piece a,
                              struct piece b, struct piece *joined)
 {
@@ -230,8 +230,8 @@ static enum grrl_status nest(struct writer *writer, enum grrl_term_kind kind, st
     return status != GRRL_OK ? status : make_pair(writer, kind, a.term, b.term, &joined->term);
 }
 
-/* The joint closes a loop within one piece: around it by writing one of its ends again, where that
- * end is one of the two links, and beside it otherwise. */
+/* The joint closes a loop within one piece. If one of the piece's ends is one of the two links, it
+ * nests the piece and writes that end again; otherwise the joint goes beside the piece. */
 static enum grrl_status close_loop(struct writer *writer, enum grrl_term_kind kind, uint8_t u,
                                    uint8_t v, struct piece *piece)
 {
@@ -253,7 +253,7 @@ static enum grrl_status close_loop(struct writer *writer, enum grrl_term_kind ki
     return status != GRRL_OK ? status : nest(writer, GRRL_TERM_AND, old, joint, piece);
 }
 
-/* The joint connects two pieces, a with u and b with v. */
+/* The joint connects two pieces: a contains u and b contains v. */
 static enum grrl_status connect(struct writer *writer, enum grrl_term_kind kind, uint8_t u,
                                 uint8_t v, struct piece a, struct piece b, struct piece *joined)
 {
@@ -263,7 +263,8 @@ static enum grrl_status connect(struct writer *writer, enum grrl_term_kind kind,
         if (b.last == v && a.first == u)
             return nest(writer, kind, b, a, joined);
     }
-    struct piece together = a.term != 0 ? a : b; /* single links need not stand beside the joint */
+    struct piece together =
+        a.term != 0 ? a : b; /* a single link need not be written beside the joint */
     enum grrl_status status = GRRL_OK;
     if (a.term != 0 && b.term != 0)
         status = nest(writer, GRRL_TERM_AND, a, b, &together);
@@ -294,7 +295,7 @@ static enum grrl_status write_joint(struct writer *writer, const struct grrl_edg
     return status;
 }
 
-/* Puts the pieces, each at the index of its smallest link, side by side. */
+/* Joins all pieces into one term; each piece is stored at the index of its smallest link. */
 static enum grrl_status write_all(struct writer *writer, bool with_background, grrl_term *term)
 {
     grrl_term arguments[GRRL_MAX_LINKS + 1];
@@ -318,7 +319,7 @@ static enum grrl_status write_all(struct writer *writer, bool with_background, g
     return GRRL_OK;
 }
 
-/* Names that differ, and a background that has its label and a joint. */
+/* Whether the names are distinct, and the background has its label and a joint. */
 static bool names_fit(const struct grrl_graph *graph, const struct grrl_name *names,
                       bool *has_background)
 {
@@ -336,7 +337,7 @@ static bool names_fit(const struct grrl_graph *graph, const struct grrl_name *na
     return true;
 }
 
-/* Every joint of the graph once, and no other. */
+/* Whether the edges are exactly the joints of the graph, each once. */
 static bool edges_fit(const struct grrl_graph *graph, const struct grrl_edge *edges,
                       uint8_t n_edges)
 {
@@ -355,8 +356,8 @@ static bool edges_fit(const struct grrl_graph *graph, const struct grrl_edge *ed
     return true;
 }
 
-/* Where the next trail of joints begins: at a link already on one, so that a component is finished
- * first, or at an end of a new component. GRRL_MAX_LINKS when no joint is left. */
+/* Picks where the next trail of joints begins: at a link on an earlier trail, so that a component
+ * is finished first, else at an end of a new component. GRRL_MAX_LINKS when no joint is left. */
 static uint8_t begin_trail(uint8_t n, const uint32_t *left, uint32_t on_trail)
 {
     uint8_t best = GRRL_MAX_LINKS;
@@ -374,9 +375,9 @@ static uint8_t begin_trail(uint8_t n, const uint32_t *left, uint32_t on_trail)
 }
 
 /*
- * All joints as trails from link to link, which nest without a conjunction: the first of a
- * component grows in front, R(l3, R(l2, l1)), and a branch, whose first joint stands beside that,
- * at the end.
+ * Lists all joints as trails from link to link, which nest without a conjunction. The first trail
+ * of a component grows at the front, R(l3, R(l2, l1)); a branch grows at the end, and its first
+ * joint stands beside the rest.
  */
 static uint8_t list_edges(const struct grrl_graph *graph, struct grrl_edge *edges)
 {

@@ -1,4 +1,4 @@
-/* The VF2 search itself, an explicit stack of masks, and orbits by it. */
+/* The VF2 search with an explicit stack of masks, and orbits computed with it. */
 #include "grrl/structure/match.h"
 
 #include <assert.h>
@@ -22,7 +22,7 @@ enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
 }
 
 /*
- * The targets worth trying at this depth: allowed, unused, joined to the images of all mapped
+ * The candidate targets at this depth: allowed, unused, and joined to the images of all mapped
  * neighbours by joints of the right types.
  */
 static inline uint32_t open_depth(const struct grrl_match *match, int depth, uint32_t used)
@@ -43,9 +43,10 @@ static inline uint32_t open_depth(const struct grrl_match *match, int depth, uin
 }
 
 /*
- * The rules for one more pair, beyond what the candidates guarantee: the same label, and for
- * isomorphism the same colour, for monomorphism nothing that the target has less of. An isomorphism
- * needs no look for joints that only the target has: both have the same number of joints.
+ * Checks one more pair, beyond what the candidates guarantee. The labels must be equal. For
+ * isomorphism the colours must be equal too; for monomorphism no count of the target may be
+ * smaller. An isomorphism needs no check for joints that only the target has: both have the same
+ * number of joints.
  */
 static inline bool is_feasible(const struct grrl_match_plan *pattern, uint8_t vertex,
                                const struct grrl_match_plan *target, uint8_t image, bool exact)
@@ -56,7 +57,7 @@ static inline bool is_feasible(const struct grrl_match_plan *pattern, uint8_t ve
     return fits && pattern->label[vertex] == target->label[image];
 }
 
-/* Goes on from where the match stands to the next mapping, with the loop's state in registers. */
+/* Continues the search to the next mapping. Local copies keep the loop's state in registers. */
 static inline enum grrl_status search(struct grrl_match *match, bool exact)
 {
     const struct grrl_match_plan *pattern = match->pattern;
@@ -93,7 +94,7 @@ static inline enum grrl_status search(struct grrl_match *match, bool exact)
             continue;
         match->image[vertex] = image;
         match->candidates[depth] = candidates;
-        if (depth == last) { /* the next call goes on with the other candidates here */
+        if (depth == last) { /* the next call continues with the other candidates here */
             status = GRRL_OK;
             break;
         }
@@ -113,7 +114,8 @@ static void start(struct grrl_match *match)
     match->used = 0;
     if (match->pattern->graph->n > 0)
         match->candidates[0] = open_depth(match, 0, 0);
-    memset(match->image, GRRL_UNMAPPED, sizeof match->image); /* those without a vertex stay so */
+    memset(match->image, GRRL_UNMAPPED,
+           sizeof match->image); /* entries beyond the pattern stay unmapped */
 }
 
 void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
@@ -130,8 +132,8 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
     own[1].graph = target;
     if (pattern->n > target->n || (kind == GRRL_MATCH_ISOMORPHISM && pattern->n < target->n))
         return;
-    grrl_match_glance(&own[0], pattern, mask);
-    grrl_match_glance(&own[1], target, mask);
+    grrl_match_plan_partly(&own[0], pattern, mask);
+    grrl_match_plan_partly(&own[1], target, mask);
     match->kind = grrl_match_kind_for(kind, &own[0], &own[1]);
     if (match->kind == GRRL_MATCH_ISOMORPHISM) {
         if (!same_counts(&own[0], &own[1]))
@@ -145,7 +147,7 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
         return;
     }
     if (pattern->n > 0)
-        grrl_match_order_glanced(&own[0], match->kind, &own[1]);
+        grrl_match_order_partly(&own[0], match->kind, &own[1]);
     for (uint8_t v = 0; v < pattern->n; v++)
         match->allowed[v] = grrl_bits_below(target->n);
     start(match);
@@ -191,7 +193,7 @@ enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
     if (match->depth == FINISHED)
         return GRRL_ERR_NONE;
     if (n == 0) {
-        match->depth = FINISHED; /* the empty mapping, once */
+        match->depth = FINISHED; /* the empty mapping is reported once */
     } else {
         enum grrl_status status =
             match->kind == GRRL_MATCH_ISOMORPHISM ? search(match, true) : search(match, false);
@@ -202,7 +204,7 @@ enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
     return GRRL_OK;
 }
 
-/* Joins the orbits of i and map[i] for every i, keeping the smallest vertex as the name. */
+/* Merges the orbits of i and map[i] for every i; the smallest vertex names the orbit. */
 static void merge_orbits(uint8_t *orbit, const uint8_t *map, uint8_t n)
 {
     for (uint8_t i = 0; i < n; i++) {
@@ -228,7 +230,7 @@ enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label ma
         for (; alike != 0 && orbit[i] == i; alike &= alike - 1u) {
             uint8_t j = grrl_first_bit(alike);
             if (orbit[j] != j)
-                continue; /* the smallest of its orbit stands for it */
+                continue; /* only the smallest vertex represents its orbit */
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
             grrl_match_begin_planned(&match, GRRL_MATCH_ISOMORPHISM, &plan, &plan, budget);

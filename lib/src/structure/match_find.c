@@ -1,14 +1,14 @@
-/* One answer, by the cheapest means: canonical forms, trees or search. */
+/* Finds one mapping by the cheapest method: search, canonical forms or trees. */
 #include <string.h>
 
 #include "grrl/structure/canonical.h"
 #include "structure/match_private.h"
 
-/* Steps before a method that answers for certain takes over, and without plans before they are
- * made: a search that goes straight takes one a link. */
+/* Search steps before an exact method takes over or, without plans, before plans are made. A search
+ * without dead ends takes one step per link. */
 enum { QUICK_STEPS = 8 * GRRL_MAX_LINKS };
 
-/* An isomorphism by canonical forms. */
+/* Finds an isomorphism by canonical forms. */
 static enum grrl_status find_canonical(const struct grrl_match_plan *pattern,
                                        const struct grrl_match_plan *target, uint8_t *map)
 {

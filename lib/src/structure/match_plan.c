@@ -1,12 +1,12 @@
-/* What is computed once for each graph: colours, counts, the order. */
+/* Precomputes for each graph: colours, counts and the search order. */
 #include <string.h>
 
 #include "structure/match_private.h"
 
-/* Rounds of colour refinement: what lies within so many joints of a vertex is in its colour. */
+/* Rounds of colour refinement: a vertex's colour covers everything within this many joints. */
 enum { ROUNDS = 4 };
 
-/* Odd numbers without pattern (the first digits of the golden ratio, and of xxHash's primes). */
+/* Odd numbers without a pattern (the first digits of the golden ratio, and xxHash's primes). */
 #define SPREAD_LOW UINT32_C(0x9e3779b1)
 #define SPREAD_HIGH UINT32_C(0x85ebca77)
 #define SPREAD_REVOLUTE UINT32_C(0xc2b2ae3d)
@@ -24,8 +24,8 @@ static inline uint32_t hash_label(grrl_label label)
     return (uint32_t)label * SPREAD_LOW + (uint32_t)(label >> 32) * SPREAD_HIGH;
 }
 
-void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *graph,
-                       grrl_label mask)
+void grrl_match_plan_partly(struct grrl_match_plan *plan, const struct grrl_graph *graph,
+                            grrl_label mask)
 {
     uint32_t ends[GRRL_JOINT_TYPES] = {0};
     plan->graph = graph;
@@ -42,7 +42,7 @@ void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *gr
         plan->joints[type] = (uint8_t)(ends[type] / 2);
 }
 
-/* A colour of label and degrees for each vertex; the hash is their sum. */
+/* Sets each vertex's colour from its label and degrees; the plan's hash is their sum. */
 void grrl_match_colour(struct grrl_match_plan *plan)
 {
     uint32_t sum = 0;
@@ -84,7 +84,7 @@ void grrl_match_order_from(struct grrl_match_plan *plan, uint8_t first)
     }
 }
 
-/* One of eight counters, as the shift to its byte in a word. */
+/* Selects one of eight byte counters in a word; returns the shift to its byte. */
 static inline unsigned bucket_of(const struct grrl_match_plan *plan, enum grrl_match_kind kind,
                                  unsigned vertex)
 {
@@ -93,8 +93,8 @@ static inline unsigned bucket_of(const struct grrl_match_plan *plan, enum grrl_m
     return key >> 29 << 3;
 }
 
-void grrl_match_order_glanced(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
-                              const struct grrl_match_plan *target)
+void grrl_match_order_partly(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
+                             const struct grrl_match_plan *target)
 {
     uint64_t counts = 0;
     for (unsigned i = 0; i < target->graph->n; i++)
@@ -128,7 +128,7 @@ static void refine_colours(struct grrl_match_plan *plan)
     }
 }
 
-/* The other growing counts: links within two joints, the most joints of a neighbour. */
+/* Adds the other growing counts: links within two joints, and the highest degree of a neighbour. */
 static void count_surroundings(struct grrl_match_plan *plan)
 {
     const struct grrl_graph *graph = plan->graph;
@@ -147,7 +147,7 @@ static void count_surroundings(struct grrl_match_plan *plan)
     }
 }
 
-/* Ranks the colours by their numbers; cells are the sets of one colour. */
+/* Ranks the colours by value; each cell is the set of vertices of one colour. */
 static void rank_colours(struct grrl_match_plan *plan)
 {
     uint64_t sorted[GRRL_MAX_LINKS];
@@ -173,8 +173,8 @@ static void rank_colours(struct grrl_match_plan *plan)
 }
 
 /*
- * Orders a pattern: each vertex a neighbour of earlier ones where there is one, of several of them
- * if possible, then the rarest colour, then the most joints.
+ * Orders a pattern's vertices. Neighbours of earlier vertices come first, those of several before
+ * those of one; then the rarest colour, then the most joints.
  */
 static void order_planned(struct grrl_match_plan *plan)
 {
@@ -184,8 +184,8 @@ static void order_planned(struct grrl_match_plan *plan)
         score[v] = grrl_bit_count(plan->cell[plan->rank[v]]) << 16 |
                    (32u - grrl_bit_count(grrl_match_neighbours(graph, v))) << 8 | v;
     uint32_t placed = 0;
-    uint32_t frontier = 0; /* neighbours of placed vertices, */
-    uint32_t tied = 0;     /* and of them those of two or more */
+    uint32_t frontier = 0; /* neighbours of placed vertices */
+    uint32_t tied = 0;     /* those with two or more placed neighbours */
     uint8_t parent[GRRL_MAX_LINKS];
     for (uint8_t depth = 0; depth < graph->n; depth++) {
         uint32_t choices = tied != 0 ? tied : frontier;
@@ -217,7 +217,7 @@ static void order_planned(struct grrl_match_plan *plan)
 void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *graph,
                         grrl_label mask)
 {
-    grrl_match_glance(plan, graph, mask);
+    grrl_match_plan_partly(plan, graph, mask);
     grrl_match_colour(plan);
     for (int round = 0; round < ROUNDS; round++)
         refine_colours(plan);

@@ -10,39 +10,41 @@
 /* The free bit above each count of grrl_match_plan.growing. */
 #define GRRL_MATCH_GUARDS UINT32_C(0x80808080)
 
-/* As grrl_graph_neighbours, without a call in the innermost loops. */
+/* Like grrl_graph_neighbours, but inline for the innermost loops. */
 static inline uint32_t grrl_match_neighbours(const struct grrl_graph *graph, uint8_t vertex)
 {
     return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
 }
 
 /*
- * One mapping as in grrl_match_find, by a search that needs nothing made beforehand.
- * GRRL_ERR_UNDECIDED: the budget is used up.
+ * Finds one mapping as in grrl_match_find, by a search that needs no plan. GRRL_ERR_UNDECIDED: the
+ * budget is used up.
  */
 enum grrl_status grrl_match_quick(enum grrl_match_kind kind, const struct grrl_graph *pattern,
                                   const struct grrl_graph *target, grrl_label mask, uint32_t budget,
                                   uint8_t *map);
 
-/* The part of a plan that pays for one enumeration: labels, joints, and degrees as the only growing
- * counts; then colours of both for isomorphism. No order, cells or signature. */
-void grrl_match_glance(struct grrl_match_plan *plan, const struct grrl_graph *graph,
-                       grrl_label mask);
+/* Makes the part of a plan that pays off for a single enumeration: labels, joints, and degrees as
+ * the only growing counts. Isomorphism also needs the colours of both. No order, cells or
+ * signature. */
+void grrl_match_plan_partly(struct grrl_match_plan *plan, const struct grrl_graph *graph,
+                            grrl_label mask);
 void grrl_match_colour(struct grrl_match_plan *plan);
 
-/* The steps of a pattern from a start outwards. first: the vertex to begin with. */
+/* Orders the steps of a pattern outwards from the vertex `first`. */
 void grrl_match_order_from(struct grrl_match_plan *plan, uint8_t first);
 
-/* The same from a vertex that few targets look like; plans as of grrl_match_glance. */
-void grrl_match_order_glanced(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
-                              const struct grrl_match_plan *target);
+/* Like grrl_match_order_from, starting at a vertex that few targets resemble; for plans of
+ * grrl_match_plan_partly. */
+void grrl_match_order_partly(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
+                             const struct grrl_match_plan *target);
 
-/* Between graphs with the same numbers of links and joints either kind is an isomorphism. */
+/* Between graphs with equal numbers of links and joints, either kind is an isomorphism. */
 enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
                                          const struct grrl_match_plan *pattern,
                                          const struct grrl_match_plan *target);
 
-/* What must hold before any search; false is certain. */
+/* A necessary condition, checked before any search; false is certain. */
 bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,
                                 const struct grrl_match_plan *target);
 

@@ -1,40 +1,40 @@
 /*
- * A single search, without plans: what it needs to know of two graphs is made in some tens of
- * nanoseconds, and keeps it from nearly every wrong turn.
+ * A single search without plans. It prepares a few sets per graph in some tens of nanoseconds; they
+ * prevent nearly every dead end.
  *
- * Bit v of a set is whether something holds of vertex v: that it is labelled like the reference
- * (the pattern's first vertex), or that it has a joint of some type to vertices that are or are not
- * labelled so. The sets of both graphs give the domain of each vertex of the pattern, the targets
- * that look like it, for four vertices at a time where the machine has instructions for that.
+ * Bit v of a set tells whether vertex v has a trait: it has the same label as the reference (the
+ * pattern's first vertex), or a joint of some type to vertices that have or lack that label. The
+ * sets of both graphs give each pattern vertex its domain, the target vertices with compatible
+ * traits. Machines with vector instructions handle four vertices at a time.
  */
 #include <string.h>
 
 #include "structure/match_private.h"
 
 /*
- * What a vertex has, each by the type of joint: one to a vertex labelled like the reference, one to
- * another vertex, and two or more joints.
+ * The traits of a vertex, for each type of joint: a joint to a vertex labelled like the reference,
+ * a joint to another vertex, and two or more joints.
  */
-enum { LOOKS = 3 * GRRL_JOINT_TYPES };
+enum { TRAITS = 3 * GRRL_JOINT_TYPES };
 
 struct side {
     const struct grrl_graph *graph;
     const grrl_label *label; /* under the mask */
-    uint32_t alike;          /* vertices labelled like the reference, */
-    uint32_t look[LOOKS];    /* and with such joints */
+    uint32_t alike;          /* vertices labelled like the reference */
+    uint32_t trait[TRAITS];  /* vertices with each trait */
     grrl_label masked[GRRL_MAX_LINKS];
 };
 
 struct quick {
     struct side pattern;
     struct side target;
-    uint32_t domain[GRRL_MAX_LINKS];     /* per pattern vertex: targets that look like it */
+    uint32_t domain[GRRL_MAX_LINKS];     /* per pattern vertex: targets with compatible traits */
     uint32_t candidates[GRRL_MAX_LINKS]; /* per depth: targets not yet tried */
-    uint8_t vertex[GRRL_MAX_LINKS];      /* per depth, as deep as the search has been */
+    uint8_t vertex[GRRL_MAX_LINKS];      /* per depth, up to the deepest reached */
     uint8_t *image;                      /* per pattern vertex */
 };
 
-static void take_graph(struct side *side, const struct grrl_graph *graph, grrl_label mask)
+static void set_graph(struct side *side, const struct grrl_graph *graph, grrl_label mask)
 {
     side->graph = graph;
     side->label = graph->label;
@@ -45,7 +45,7 @@ static void take_graph(struct side *side, const struct grrl_graph *graph, grrl_l
     side->label = side->masked;
 }
 
-static void look_around(struct side *side, grrl_label reference)
+static void find_traits(struct side *side, grrl_label reference)
 {
     const struct grrl_graph *graph = side->graph;
     uint64_t to_alike = 0; /* revolute in the lower half, prismatic in the upper */
@@ -62,10 +62,10 @@ static void look_around(struct side *side, grrl_label reference)
         to_others |= joined & others;
         to_alike |= joined & ~others;
     }
-    const uint64_t look[LOOKS / GRRL_JOINT_TYPES] = {to_alike, to_others, more};
-    for (size_t k = 0; k < LOOKS / GRRL_JOINT_TYPES; k++) {
-        side->look[2 * k] = (uint32_t)look[k];
-        side->look[2 * k + 1] = (uint32_t)(look[k] >> 32);
+    const uint64_t trait[TRAITS / GRRL_JOINT_TYPES] = {to_alike, to_others, more};
+    for (size_t k = 0; k < TRAITS / GRRL_JOINT_TYPES; k++) {
+        side->trait[2 * k] = (uint32_t)trait[k];
+        side->trait[2 * k + 1] = (uint32_t)(trait[k] >> 32);
     }
     side->alike = alike;
 }
@@ -78,14 +78,15 @@ static uint32_t count_ends(const struct grrl_graph *graph, int type)
     return ends;
 }
 
-/* Whether as many vertices have each look, and there are as many joints of each type. */
-static bool looks_the_same(const struct side *a, const struct side *b)
+/* Whether equally many vertices have each trait, and there are as many joints of each type. */
+static bool same_trait_counts(const struct side *a, const struct side *b)
 {
     uint32_t differing = grrl_bit_count(a->alike) ^ grrl_bit_count(b->alike);
-    for (int k = 0; k < LOOKS; k++) {
-        differing |= grrl_bit_count(a->look[k] & a->alike) ^ grrl_bit_count(b->look[k] & b->alike);
+    for (int k = 0; k < TRAITS; k++) {
         differing |=
-            grrl_bit_count(a->look[k] & ~a->alike) ^ grrl_bit_count(b->look[k] & ~b->alike);
+            grrl_bit_count(a->trait[k] & a->alike) ^ grrl_bit_count(b->trait[k] & b->alike);
+        differing |=
+            grrl_bit_count(a->trait[k] & ~a->alike) ^ grrl_bit_count(b->trait[k] & ~b->alike);
     }
     if (differing != 0)
         return false;
@@ -95,10 +96,10 @@ static bool looks_the_same(const struct side *a, const struct side *b)
     return true;
 }
 
-/* The domains, and the vertex with the fewest targets; false: some vertex has none. */
+/* Computes the domains and the vertex with the smallest one; false if some domain is empty. */
 static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
 {
-    /* a table: few machines shift the lanes of a vector by different amounts */
+    /* a table, because few machines can shift vector lanes by different amounts */
     static const uint32_t bit[32] = {
         1u << 0,  1u << 1,  1u << 2,  1u << 3,  1u << 4,  1u << 5,  1u << 6,  1u << 7,
         1u << 8,  1u << 9,  1u << 10, 1u << 11, 1u << 12, 1u << 13, 1u << 14, 1u << 15,
@@ -108,13 +109,13 @@ static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
     const struct side *target = &quick->target;
     const unsigned n = pattern->graph->n;
     const uint32_t all = grrl_bits_below(target->graph->n);
-    int32_t fewest = INT32_MAX; /* with the vertex in the lowest byte */
+    int32_t fewest = INT32_MAX; /* with the vertex in its lowest byte */
     for (unsigned v = 0; v < n; v++) {
-        uint32_t has_not = (pattern->alike & bit[v]) == 0 ? UINT32_MAX : 0;
-        uint32_t domain = all & (target->alike ^ has_not);
-        for (int k = 0; k < LOOKS; k++) {
-            has_not = (pattern->look[k] & bit[v]) == 0 ? UINT32_MAX : 0;
-            domain &= exact ? target->look[k] ^ has_not : target->look[k] | has_not;
+        uint32_t lacks = (pattern->alike & bit[v]) == 0 ? UINT32_MAX : 0;
+        uint32_t domain = all & (target->alike ^ lacks);
+        for (int k = 0; k < TRAITS; k++) {
+            lacks = (pattern->trait[k] & bit[v]) == 0 ? UINT32_MAX : 0;
+            domain &= exact ? target->trait[k] ^ lacks : target->trait[k] | lacks;
         }
         quick->domain[v] = domain;
         int32_t score = (int32_t)(grrl_bit_count(domain) << 8 | v);
@@ -124,7 +125,7 @@ static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
     return fewest > 0xff;
 }
 
-/* Targets for a vertex that are free and joined to the images of its placed neighbours. */
+/* Target vertices that are free and joined to the images of the vertex's placed neighbours. */
 static inline uint32_t find_candidates(const struct quick *quick, uint8_t vertex, uint32_t placed,
                                        uint32_t used)
 {
@@ -140,8 +141,8 @@ static inline uint32_t find_candidates(const struct quick *quick, uint8_t vertex
     return candidates;
 }
 
-/* The order of the vertices is made on the way: neighbours of placed ones, those of the latest
- * last, since its image is the last to be known. */
+/* Chooses the order of the vertices during the search: neighbours of placed vertices, those of the
+ * most recent one last, because its image is known last. */
 static enum grrl_status search(struct quick *quick, uint8_t first, uint32_t budget)
 {
     const struct grrl_graph *pattern = quick->pattern.graph;
@@ -204,11 +205,11 @@ enum grrl_status grrl_match_quick(enum grrl_match_kind kind, const struct grrl_g
     if (pattern->n == 0)
         return GRRL_OK;
     quick.image = map;
-    take_graph(&quick.pattern, pattern, mask);
-    take_graph(&quick.target, target, mask);
-    look_around(&quick.pattern, quick.pattern.label[0]);
-    look_around(&quick.target, quick.pattern.label[0]);
-    if (exact && !looks_the_same(&quick.pattern, &quick.target))
+    set_graph(&quick.pattern, pattern, mask);
+    set_graph(&quick.target, target, mask);
+    find_traits(&quick.pattern, quick.pattern.label[0]);
+    find_traits(&quick.target, quick.pattern.label[0]);
+    if (exact && !same_trait_counts(&quick.pattern, &quick.target))
         return GRRL_ERR_NONE;
     if (!(exact ? find_domains(&quick, true, &first) : find_domains(&quick, false, &first)))
         return GRRL_ERR_NONE;

@@ -1,4 +1,4 @@
-/* Matches a tree into a tree in polynomial time, by pairing children. */
+/* Matches a tree into a forest in polynomial time, by pairing children. */
 #include <string.h>
 
 #include "structure/match_private.h"
@@ -7,22 +7,23 @@
 struct pairing {
     uint8_t child[GRRL_MAX_LINKS];
     uint32_t suitable[GRRL_MAX_LINKS]; /* per child: neighbours it could be mapped to */
-    uint8_t taken[GRRL_MAX_LINKS];     /* per child: the neighbour it is paired with */
+    uint8_t taken[GRRL_MAX_LINKS];     /* per child: its neighbour */
     uint8_t owner[GRRL_MAX_LINKS];     /* per neighbour in `owned`: its child */
     uint32_t owned;
     uint8_t n;
 };
 
 /*
- * without[p][t]: for the part of the pattern that hangs on p, seen from the root, mapped with p on
- * t: the neighbours of t it can do without, and t itself if it can be mapped at all.
+ * spare[p][t] concerns the part of the pattern that hangs on p, seen from the root, mapped with p
+ * on t. It holds the neighbours of t that the mapping does not need, and t itself if there is a
+ * mapping at all.
  */
 struct tree_search {
     const struct grrl_match_plan *pattern;
     const struct grrl_match_plan *target;
     struct grrl_match_plan rooted; /* the steps from the root outwards */
     uint8_t parent[GRRL_MAX_LINKS];
-    uint32_t without[GRRL_MAX_LINKS][GRRL_MAX_LINKS];
+    uint32_t spare[GRRL_MAX_LINKS][GRRL_MAX_LINKS];
 };
 
 static bool is_forest(const struct grrl_match_plan *plan, unsigned most_components)
@@ -35,14 +36,14 @@ static bool is_forest(const struct grrl_match_plan *plan, unsigned most_componen
     return components <= most_components && joints + components == plan->graph->n;
 }
 
-static bool looks_alike(const struct tree_search *search, uint8_t p, uint8_t t)
+static bool is_compatible(const struct tree_search *search, uint8_t p, uint8_t t)
 {
     uint32_t left = (search->target->growing[t] | GRRL_MATCH_GUARDS) - search->pattern->growing[p];
     return (left & GRRL_MATCH_GUARDS) == GRRL_MATCH_GUARDS &&
            search->pattern->label[p] == search->target->label[t];
 }
 
-/* The children of p and where they could go; false if one of them could go nowhere. */
+/* Lists the children of p and the neighbours suitable for each; false if a child has none. */
 static bool list_children(const struct tree_search *search, uint8_t p, uint8_t t,
                           struct pairing *pairing)
 {
@@ -58,7 +59,7 @@ static bool list_children(const struct tree_search *search, uint8_t p, uint8_t t
             uint8_t child = grrl_first_bit(children);
             uint32_t suitable = 0;
             for (uint32_t rest = target->joined[type][t]; rest != 0; rest &= rest - 1u)
-                if ((search->without[child][grrl_first_bit(rest)] & grrl_bit(t)) != 0)
+                if ((search->spare[child][grrl_first_bit(rest)] & grrl_bit(t)) != 0)
                     suitable |= rest & (0u - rest);
             if (suitable == 0)
                 return false;
@@ -69,7 +70,7 @@ static bool list_children(const struct tree_search *search, uint8_t p, uint8_t t
     return true;
 }
 
-/* Pairs one more child, moving others if needed (an augmenting path, breadth first). On failure
+/* Pairs one more child, moving others if needed (a breadth-first augmenting path). On failure
  * nothing changes. */
 static bool pair_child(struct pairing *pairing, uint8_t child, uint32_t forbidden)
 {
@@ -113,31 +114,31 @@ static bool pair_all(struct pairing *pairing, uint32_t forbidden)
     return true;
 }
 
-/* without[p][t], when it is known for the children of p. */
+/* Computes spare[p][t], given the values for the children of p. */
 static uint32_t spare_neighbours(const struct tree_search *search, uint8_t p, uint8_t t)
 {
     struct pairing pairing;
-    if (!looks_alike(search, p, t) || !list_children(search, p, t, &pairing) ||
+    if (!is_compatible(search, p, t) || !list_children(search, p, t, &pairing) ||
         !pair_all(&pairing, 0))
         return 0;
     uint32_t neighbours = grrl_match_neighbours(search->target->graph, t);
-    uint32_t spare = grrl_bit(t) | (neighbours & ~pairing.owned);
+    uint32_t free_now = grrl_bit(t) | (neighbours & ~pairing.owned);
     for (uint32_t rest = neighbours & pairing.owned; rest != 0; rest &= rest - 1u) {
         uint8_t neighbour = grrl_first_bit(rest);
         if ((pairing.owned & grrl_bit(neighbour)) == 0) {
-            spare |= grrl_bit(neighbour); /* given up for another one */
+            free_now |= grrl_bit(neighbour); /* freed when another child took its place */
             continue;
         }
         pairing.owned &= ~grrl_bit(neighbour);
         if (pair_child(&pairing, pairing.owner[neighbour], grrl_bit(neighbour)))
-            spare |= grrl_bit(neighbour);
+            free_now |= grrl_bit(neighbour);
         else
             pairing.owned |= grrl_bit(neighbour);
     }
-    return spare;
+    return free_now;
 }
 
-/* One mapping with the root on this target, from the root outwards. */
+/* Writes one mapping that sends the root to this target, from the root outwards. */
 static void write_map(const struct tree_search *search, uint8_t root_image, uint8_t *map)
 {
     memset(map, GRRL_UNMAPPED, GRRL_MAX_LINKS);
@@ -170,8 +171,8 @@ enum grrl_status grrl_match_tree(const struct grrl_match_plan *pattern,
         uint8_t p = search.rooted.step[i].vertex;
         search.parent[p] = search.rooted.step[i].parent;
         for (uint8_t t = 0; t < target->graph->n; t++) {
-            search.without[p][t] = spare_neighbours(&search, p, t);
-            if (i == 0 && search.without[p][t] != 0)
+            search.spare[p][t] = spare_neighbours(&search, p, t);
+            if (i == 0 && search.spare[p][t] != 0)
                 *images |= grrl_bit(t);
         }
     }

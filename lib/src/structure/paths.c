@@ -4,18 +4,18 @@
 #include "base/bits.h"
 #include "grrl/structure/signature.h"
 
-/* Joints of the chains that are looked at, and how many chains may be. */
+/* Shortest and longest chains counted, in joints, and the limit on the number of chains. */
 enum { SHORTEST = 4, LONGEST = 6, MOST_CHAINS = 4096, FULL = 7 };
 
-/* A chain from one link on. */
+/* A chain of joints that starts at one link. */
 struct chain {
     const struct grrl_graph *graph;
     unsigned joints;
     uint32_t seen;                 /* its links */
-    uint32_t untried[LONGEST + 1]; /* per link of it: further links */
+    uint32_t untried[LONGEST + 1]; /* per link of the chain: neighbours still to try */
     uint8_t link[LONGEST + 1];
-    uint32_t types[LONGEST + 1];    /* up to each link: prismatic joints, the first in bit 0 */
-    uint32_t reversed[LONGEST + 1]; /* the same read from the other end */
+    uint32_t types[LONGEST + 1];    /* up to each link: bit i is set if joint i is prismatic */
+    uint32_t reversed[LONGEST + 1]; /* the same, read from the other end */
 };
 
 static void add_count(struct grrl_paths *paths, unsigned place, uint32_t more)
@@ -26,8 +26,8 @@ static void add_count(struct grrl_paths *paths, unsigned place, uint32_t more)
     *word = (*word & ~(UINT32_C(0xf) << shift)) | (count < FULL ? count : FULL) << shift;
 }
 
-/* The first chain of some types sets the bit of the types as read from the end that makes the
- * smaller number, the second that of the other reading. */
+/* Reads the types from both ends. The first chain of some types sets the bit of the smaller number,
+ * the second chain that of the larger one. */
 static void add_chain(struct grrl_paths *paths, unsigned joints, uint32_t types, uint32_t reversed)
 {
     uint32_t smaller = types < reversed ? types : reversed;
@@ -42,8 +42,8 @@ static void add_chain(struct grrl_paths *paths, unsigned joints, uint32_t types,
     paths->word[first + smaller / 32] |= grrl_bit(smaller % 32);
 }
 
-/* Three joints at one link, by how many are prismatic, in places that no chain takes: read from
- * the other end these types make smaller numbers. */
+/* Counts three joints at one link, by how many are prismatic. They use places that no chain takes:
+ * read from the other end, these types give smaller numbers. */
 static void add_stars(struct grrl_paths *paths, const struct grrl_graph *graph, uint8_t link)
 {
     static const uint8_t place[4] = {4, 8, 10, 12};
@@ -55,7 +55,7 @@ static void add_stars(struct grrl_paths *paths, const struct grrl_graph *graph, 
     add_count(paths, place[3], p > 2 ? p * (p - 1) * (p - 2) / 6 : 0);
 }
 
-/* The chain with one more link, depth first; 0 joints: there is no further chain from its start. */
+/* Advances to the next chain, depth first; 0 joints: no further chain from this start. */
 static void next_chain(struct chain *chain)
 {
     while (chain->untried[chain->joints] == 0) {
@@ -87,7 +87,8 @@ void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths)
         add_stars(paths, graph, start);
         for (next_chain(&chain); chain.joints > 0; next_chain(&chain)) {
             unsigned end = chain.joints;
-            if (++chains > MOST_CHAINS) { /* a larger structure has no fewer, and is full as well */
+            if (++chains >
+                MOST_CHAINS) { /* so has any larger structure, which then saturates too */
                 memset(paths, 0x77, GRRL_PATH_COUNTS * sizeof paths->word[0]);
                 memset(&paths->word[GRRL_PATH_COUNTS], 0xff,
                        (GRRL_PATH_WORDS - GRRL_PATH_COUNTS) * sizeof paths->word[0]);

@@ -5,7 +5,7 @@
 
 enum { MOST = 127, COUNTS = 8 };
 
-/* Counts on their way into a signature. */
+/* Counts being packed into a signature. */
 struct counts {
     uint32_t of[GRRL_SIGNATURE_WORDS][COUNTS];
 };
@@ -21,13 +21,13 @@ enum shape_count {
     LOOPS
 };
 
-/* Which of the eight counts of a word a number belongs to. */
+/* Which of the eight counts of a word a number goes to. */
 static unsigned bucket(uint64_t number)
 {
     return (unsigned)(number * UINT64_C(0x9e3779b97f4a7c15) >> 61);
 }
 
-/* A number for a label that sums of it do not hide. */
+/* Hashes a label, so that a sum of hashes distinguishes sets of labels. */
 static uint64_t label_number(grrl_label label)
 {
     label ^= label >> 29;
@@ -35,7 +35,7 @@ static uint64_t label_number(grrl_label label)
     return label ^ label >> 32;
 }
 
-/* Pairs of joints at one link, by types; joints in the middle of a chain of three, by types. */
+/* Counts pairs of joints at one link, and chains of three joints, both by types. */
 static void count_paths(const struct grrl_graph *graph, uint32_t *count)
 {
     uint32_t degree[GRRL_MAX_LINKS][GRRL_JOINT_TYPES];
@@ -89,7 +89,7 @@ static void count_shape(const struct grrl_graph *graph, uint32_t *count)
     count[LOOPS] = count[REVOLUTE] + count[PRISMATIC] + components - graph->n;
 }
 
-/* Links by label, joints and pairs of joints at a link by labels and types. */
+/* Counts links by label, and joints and pairs of joints at a link by labels and types. */
 static void count_labels(const struct grrl_graph *graph, grrl_label mask, struct counts *counts)
 {
     uint64_t own[GRRL_MAX_LINKS];

@@ -58,7 +58,7 @@ enum grrl_name_kind grrl_term_name_form(const char *text, size_t length)
     }
 }
 
-/* An identifier that fits the store and has no meaning of its own. */
+/* Whether this is an identifier that fits the store and has no reserved meaning. */
 static bool is_symbol(const char *text, size_t length)
 {
     if (length == 0 || length >= GRRL_SYMBOL_BYTES || !grrl_is_letter(text[0]) ||
@@ -70,8 +70,8 @@ static bool is_symbol(const char *text, size_t length)
     return true;
 }
 
-/* The number from 1 of a symbol in a table of *n, added when it is new; 0 when the table is full.
- */
+/* Finds or adds a symbol in a table of *n and returns its number, counting from 1; 0 when the table
+ * is full. */
 static uint8_t find_or_add(char (*table)[GRRL_SYMBOL_BYTES], uint8_t capacity, uint8_t *n,
                            const char *text, size_t length)
 {
@@ -186,8 +186,8 @@ enum grrl_status grrl_term_make_link(struct grrl_term_store *store, struct grrl_
     return GRRL_OK;
 }
 
-/* Whether these terms may become the arguments of one node: each exists, is no action and is given
- * once (a list with a repeated node would close on itself). */
+/* Whether these terms may become arguments of one node: each exists, is not an action and appears
+ * once (a repeated node would make the list circular). */
 static bool may_be_arguments(const struct grrl_term_store *store, const grrl_term *arguments,
                              uint16_t n)
 {

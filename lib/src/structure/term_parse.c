@@ -1,17 +1,17 @@
-/* Parses a term with an explicit stack, and says where it is wrong. */
+/* Parses a term with an explicit stack, and reports where it is wrong. */
 #include <string.h>
 
 #include "structure/term_private.h"
 
-enum { MAX_FOUND_BYTES = 24 }; /* of a word quoted in a message */
+enum { MAX_FOUND_BYTES = 24 }; /* longest quote of a word in a message */
 
-/* A relation, or the text as a whole, whose arguments are being read. */
+/* A relation whose arguments are being read, or the whole text. */
 struct frame {
-    grrl_term relation; /* 0 for the text as a whole */
-    grrl_term last;     /* its last complete argument, 0 if there is none */
+    grrl_term relation; /* 0 for the whole text */
+    grrl_term last;     /* the last complete argument; 0 if there is none */
     uint16_t n_arguments;
-    grrl_term current;   /* the argument being read: a term, or a conjunction of those so far */
-    grrl_term last_part; /* of that conjunction, 0 while there is none */
+    grrl_term current;   /* the argument being read: a term, or the conjunction so far */
+    grrl_term last_part; /* the last part of that conjunction; 0 if there is none */
 };
 
 struct parser {
@@ -24,7 +24,7 @@ struct parser {
     int depth;
 };
 
-/* Fills in the position; the caller appends the message to what is returned. */
+/* Fills in the position. The caller appends the message to the returned text. */
 static struct grrl_text error_at(struct parser *parser, size_t at)
 {
     struct grrl_term_error *error = parser->error;
@@ -36,7 +36,7 @@ static struct grrl_text error_at(struct parser *parser, size_t at)
             error->line++;
             error->column = 1;
         } else if (((unsigned char)parser->text[i] & 0xc0u) != 0x80u) {
-            error->column++; /* a character, not a further byte of one */
+            error->column++; /* counts characters, not continuation bytes */
         }
     }
     return grrl_text_begin(error->message, sizeof error->message);
@@ -72,7 +72,7 @@ static void describe_found(const struct parser *parser, size_t at, struct grrl_t
     }
 }
 
-static enum grrl_status refuse(struct parser *parser, size_t at, enum grrl_status status,
+static enum grrl_status reject(struct parser *parser, size_t at, enum grrl_status status,
                                const char *why)
 {
     struct grrl_text message = error_at(parser, at);
@@ -125,8 +125,8 @@ static void skip_space(struct parser *parser)
     }
 }
 
-/* The next character after white space, '\0' at the end (and for a zero byte, which fits nowhere
- * either). */
+/* The next character after white space; '\0' at the end (and for a zero byte, which is never
+ * valid). */
 static char peek(struct parser *parser)
 {
     skip_space(parser);
@@ -143,7 +143,7 @@ static bool accept(struct parser *parser, char c)
     return true;
 }
 
-/* The digits from..end as a number, limit + 1 for everything above the limit. */
+/* The digits from..end as a number; limit + 1 for any number above the limit. */
 static uint32_t read_number(const struct parser *parser, size_t from, size_t end, uint32_t limit)
 {
     uint32_t number = 0;
@@ -167,7 +167,8 @@ static enum grrl_status read_identifier(struct parser *parser, size_t from, size
     }
 }
 
-/* A name in the word from..end; `expected` says what stands there otherwise. */
+/* Reads a name from the word from..end; `expected` describes what the message asks
+ * for otherwise. */
 static enum grrl_status read_name(struct parser *parser, size_t from, size_t end,
                                   const char *expected, struct grrl_name *name)
 {
@@ -178,13 +179,13 @@ static enum grrl_status read_name(struct parser *parser, size_t from, size_t end
     if (kind != GRRL_NAME_BACKGROUND)
         number = read_number(parser, from + 1, end, UINT16_MAX);
     if (number > UINT16_MAX)
-        return refuse(parser, from, GRRL_ERR_SYNTAX, "the number of a name is at most 65535");
+        return reject(parser, from, GRRL_ERR_SYNTAX, "the number of a name is at most 65535");
     name->kind = (uint16_t)kind;
     name->number = (uint16_t)number;
     return GRRL_OK;
 }
 
-/* A property in the word from..end: an atom, a variable or "_". */
+/* Reads a property from the word from..end: an atom, a variable or "_". */
 static enum grrl_status read_property(struct parser *parser, size_t from, size_t end,
                                       grrl_property *property)
 {
@@ -193,24 +194,24 @@ static enum grrl_status read_property(struct parser *parser, size_t from, size_t
     if (kind == GRRL_NAME_VARIABLE) {
         uint32_t number = read_number(parser, from + 1, end, GRRL_MAX_PROPERTY_VARIABLE);
         if (number > GRRL_MAX_PROPERTY_VARIABLE)
-            return refuse(parser, from, GRRL_ERR_SYNTAX,
+            return reject(parser, from, GRRL_ERR_SYNTAX,
                           "the number of a property variable is at most 127");
         *property = (grrl_property)(GRRL_PROPERTY_VARIABLE + number);
         return GRRL_OK;
     }
     if (kind != GRRL_NAME_NONE)
-        return unexpected(parser, from, "a property (the name stands last in a link)");
+        return unexpected(parser, from, "a property (the name comes last in a link)");
     if (end - from == 1 && word[0] == '_') {
         *property = 0;
         return GRRL_OK;
     }
     if (!grrl_is_lower(word[0]))
-        return unexpected(parser, from, "a property, which begins with a small letter");
+        return unexpected(parser, from, "a property, which begins with a lower-case letter");
     switch (grrl_term_intern(parser->store, word, end - from, property)) {
     case GRRL_OK:
         return GRRL_OK;
     case GRRL_ERR_FULL:
-        return refuse(parser, from, GRRL_ERR_FULL, "the store knows no more different properties");
+        return reject(parser, from, GRRL_ERR_FULL, "the store has no room for another property");
     default:
         return too_long(parser, from, "a property");
     }
@@ -224,7 +225,7 @@ static enum grrl_status make_link(struct parser *parser, size_t at, struct grrl_
     return GRRL_OK;
 }
 
-/* What follows "L(": properties, then the name and a ')'. */
+/* Reads what follows "L(": properties, the name and a ')'. */
 static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term *term)
 {
     grrl_property properties[GRRL_MAX_PROPERTIES];
@@ -238,7 +239,7 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
         parser->at = end;
         if (accept(parser, ',')) {
             if (n == GRRL_MAX_PROPERTIES)
-                return refuse(parser, from, GRRL_ERR_FULL, "too many properties for one link");
+                return reject(parser, from, GRRL_ERR_FULL, "too many properties for one link");
             enum grrl_status status = read_property(parser, from, end, &properties[n]);
             if (status != GRRL_OK)
                 return status;
@@ -254,15 +255,16 @@ static enum grrl_status read_link(struct parser *parser, size_t begin, grrl_term
     }
 }
 
-/* A word where a term begins. A '(' after it makes it a head, which must be one of the letters. */
+/* A word at the start of a term. If '(' follows, the word is a head and must be a relation's
+ * letter. */
 struct word {
     size_t from;
     size_t end;
     bool is_head;
-    char letter; /* of a head of one letter, '\0' otherwise */
+    char letter; /* of a one-letter head, '\0' otherwise */
 };
 
-/* Moves past the word, and past the '(' of a head. */
+/* Reads the word, and the '(' of a head. */
 static struct word read_word(struct parser *parser)
 {
     skip_space(parser);
@@ -274,7 +276,7 @@ static struct word read_word(struct parser *parser)
     return word;
 }
 
-/* The word as L(..) or a bare name. */
+/* Reads the word as L(..) or a bare name. */
 static enum grrl_status read_link_or_name(struct parser *parser, struct word word,
                                           const char *expected, grrl_term *term)
 {
@@ -308,11 +310,11 @@ static enum grrl_status read_direction(struct parser *parser, uint8_t *direction
     return GRRL_OK;
 }
 
-/* What follows the "A(" of an action, which is the whole text. */
+/* Reads what follows the "A(" of an action, which must be the whole text. */
 static enum grrl_status read_action(struct parser *parser, size_t begin, grrl_term *term)
 {
     if (parser->depth > 0 || parser->frames[0].current != 0)
-        return refuse(parser, begin, GRRL_ERR_SYNTAX, "an action is no part of another term");
+        return reject(parser, begin, GRRL_ERR_SYNTAX, "an action cannot be part of another term");
     grrl_term link;
     enum grrl_status status =
         read_link_or_name(parser, read_word(parser), "a link as the first argument of A", &link);
@@ -360,7 +362,7 @@ static enum grrl_status read_operand(struct parser *parser, grrl_term *term)
         if (relation_of(word.letter) == GRRL_TERM_AND)
             return read_link_or_name(parser, word, "a link or one of R, P, D, A", term);
         if (parser->depth == GRRL_MAX_TERM_DEPTH)
-            return refuse(parser, word.from, GRRL_ERR_FULL, "relations nest too deeply");
+            return reject(parser, word.from, GRRL_ERR_FULL, "relations nest too deeply");
         struct frame *frame = &parser->frames[++parser->depth];
         memset(frame, 0, sizeof *frame);
         frame->relation = grrl_term_new(parser->store, relation_of(word.letter));
@@ -369,7 +371,7 @@ static enum grrl_status read_operand(struct parser *parser, grrl_term *term)
     }
 }
 
-/* Makes a complete term the current argument, or a part of it after an '&'. */
+/* Makes a complete term the current argument, or adds it to the conjunction after an '&'. */
 static enum grrl_status take_operand(struct parser *parser, grrl_term term)
 {
     struct frame *frame = &parser->frames[parser->depth];
@@ -388,7 +390,7 @@ static enum grrl_status take_operand(struct parser *parser, grrl_term term)
     return GRRL_OK;
 }
 
-/* The current argument is complete: appends it to its relation. */
+/* Ends the current argument: appends it to its relation. */
 static void end_argument(struct parser *parser)
 {
     struct frame *frame = &parser->frames[parser->depth];
@@ -398,7 +400,7 @@ static void end_argument(struct parser *parser)
     frame->last_part = 0;
 }
 
-/* Closes every relation that ends here; *done at the end of the text. After that another operand
+/* Closes every relation that ends here and sets *done at the end of the text. Otherwise an operand
  * follows. */
 static enum grrl_status read_punctuation(struct parser *parser, bool *done)
 {
@@ -422,7 +424,7 @@ static enum grrl_status read_punctuation(struct parser *parser, bool *done)
         end_argument(parser);
         const struct frame *frame = &parser->frames[parser->depth];
         if (frame->n_arguments < 2)
-            return unexpected(parser, at, "',' and a further argument, a relation has two or more");
+            return unexpected(parser, at, "',' and another argument: a relation has two or more");
         parser->depth--;
         enum grrl_status status = take_operand(parser, frame->relation);
         if (status != GRRL_OK)

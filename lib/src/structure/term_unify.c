@@ -6,7 +6,7 @@ static bool same_name(struct grrl_name a, struct grrl_name b)
     return a.kind == b.kind && a.number == b.number;
 }
 
-/* The index of a variable's binding, n when it is free. */
+/* The index of a variable's binding; n if it is free. */
 static uint16_t find_binding(const struct grrl_substitution *substitution, uint16_t variable,
                              bool is_property)
 {
@@ -17,8 +17,8 @@ static uint16_t find_binding(const struct grrl_substitution *substitution, uint1
     return i;
 }
 
-/* Follows bindings to a name that is no bound variable. A substitution has no cycles when it comes
- * from unification; the count keeps one made by hand from running forever. */
+/* Follows bindings to a name that is not a bound variable. Unification produces no cycles; the
+ * counter stops the loop for a hand-made substitution with one. */
 static struct grrl_name resolve_name(const struct grrl_substitution *substitution,
                                      struct grrl_name name)
 {
@@ -70,7 +70,7 @@ static enum grrl_status unify_names(struct grrl_substitution *substitution, stru
     return GRRL_OK;
 }
 
-/* A variable stands for a property that is there, so it does not unify with none. */
+/* A variable stands for an existing property, so it does not unify with none. */
 static enum grrl_status unify_properties(struct grrl_substitution *substitution, grrl_property a,
                                          grrl_property b)
 {
@@ -129,10 +129,10 @@ enum grrl_status grrl_term_unify(const struct grrl_term_store *store, grrl_term 
     for (;;) {
         bool more = grrl_term_walk_next(&in_a);
         if (!grrl_term_walk_next(&in_b) || !more)
-            return GRRL_OK; /* one shape, so both walks end together */
+            return GRRL_OK; /* both terms have the same shape, so both walks end together */
         enum grrl_status status = GRRL_OK;
         if (in_a.depth != in_b.depth || in_a.entering != in_b.entering)
-            status = GRRL_ERR_NONE; /* another number of arguments */
+            status = GRRL_ERR_NONE; /* different number of arguments */
         else if (in_a.entering)
             status = unify_nodes(substitution, grrl_walk_node(&in_a), grrl_walk_node(&in_b),
                                  ignored_properties);
@@ -157,7 +157,7 @@ enum grrl_status grrl_term_substitute(struct grrl_term_store *store, grrl_term t
     if (!grrl_term_valid(store, term))
         return GRRL_ERR_ARGUMENT;
     uint16_t mark = grrl_term_mark(store);
-    grrl_term made[GRRL_WALK_DEPTH]; /* the copy of each node on the path, and its last argument */
+    grrl_term made[GRRL_WALK_DEPTH]; /* per node on the path: the copy and its last argument */
     grrl_term last[GRRL_WALK_DEPTH];
     struct grrl_walk walk;
     grrl_term_walk_begin(&walk, store, term);

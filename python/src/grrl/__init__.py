@@ -6,7 +6,7 @@ pushes tell most; `World` is a simulated table to try it on, and `Supervisor` kn
 
 from . import io
 from ._native import (DIRECTIONS_DEG, HAS_WORLD, MAX_FEATURES, MAX_JOINTS, MAX_LINKS, POLICIES,
-                      SETTLING_FRAMES, Frame)
+                      SETTLING_FRAMES, VERSION, Frame)
 from .learner import Decision, Learner, Push, Update, Usage
 from .model import Body, Joint, Model, Pair
 from .perception import Perception, perceive
@@ -21,7 +21,7 @@ except ImportError:
 else:
     envs.register()
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __all__ = [
     "Body", "DIRECTIONS_DEG", "Decision", "Frame", "HAS_WORLD", "Joint", "Learner", "MAX_FEATURES",

@@ -1,6 +1,6 @@
 /*
- * api.h: what stands around the declarations of each public header: C linkage, also for C++, and
- * visibility in a shared library whose other functions are hidden.
+ * api.h: wraps the declarations of each public header. They get C linkage in C++, and stay visible
+ * in a shared library that hides everything else.
  */
 #ifndef GRRL_BASE_API_H
 #define GRRL_BASE_API_H

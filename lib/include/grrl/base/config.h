@@ -1,11 +1,12 @@
 /*
- * config.h: the capacities of the library, fixed at compile time: plain numbers.
+ * config.h: the library's capacities, fixed at compile time. All are plain numbers.
  *
  * A CMake build takes them from its cache (cmake -DGRRL_MAX_LINKS=32) and writes them to
- * grrl_capacities.h. Whoever compiles against that build, in its tree or installed, gets the same
- * numbers, and an #error for a -D of another one. Without CMake there is no such file: the defaults
- * below hold, or -DGRRL_MAX_LINKS=32 for the library and its callers alike; where they differ, the
- * program does not link (GRRL_SIZED). docs/memory.md says what each capacity costs.
+ * grrl_capacities.h. Code compiled against that build, in its tree or installed, gets the same
+ * numbers, and an #error if it defines a different one with -D. Without CMake that file does not
+ * exist: the defaults below apply, or pass -DGRRL_MAX_LINKS=32 to both the library and its callers.
+ * If the two differ, the program does not link (GRRL_SIZED). docs/memory.md lists what each
+ * capacity costs.
  */
 #ifndef GRRL_CONFIG_H
 #define GRRL_CONFIG_H
@@ -18,32 +19,32 @@
 #endif
 #endif
 
-/* Links of one structure, all objects on the table together: 2 to 32. */
+/* Links in one structure, counting all objects on the table: 2 to 32. */
 #ifndef GRRL_MAX_LINKS
 #define GRRL_MAX_LINKS 16
 #endif
 
-/* Joints of one structure: a tree has one fewer than links, each loop adds one. */
+/* Joints in one structure. A tree has one fewer than links; each loop adds one. */
 #ifndef GRRL_MAX_JOINTS
 #define GRRL_MAX_JOINTS (2 * GRRL_MAX_LINKS)
 #endif
 
-/* Feature points tracked at the same time. */
+/* Feature points tracked at once. */
 #ifndef GRRL_MAX_FEATURES
 #define GRRL_MAX_FEATURES 192
 #endif
 
-/* Keyframes of one trial that perception remembers. */
+/* Keyframes that perception keeps for one trial. */
 #ifndef GRRL_MAX_KEYFRAMES
 #define GRRL_MAX_KEYFRAMES 48
 #endif
 
-/* Properties of one link; a graph packs them as the bytes of a 64-bit label: 1 to 8. */
+/* Properties of one link, 1 to 8. A graph packs them into the bytes of a 64-bit label. */
 #ifndef GRRL_MAX_PROPERTIES
 #define GRRL_MAX_PROPERTIES 8
 #endif
 
-/* Different property atoms a term store can know, and the bytes of a name with its zero. */
+/* Distinct property atoms in a term store, and bytes per name with the terminating zero. */
 #ifndef GRRL_MAX_SYMBOLS
 #define GRRL_MAX_SYMBOLS 32
 #endif
@@ -51,23 +52,24 @@
 #define GRRL_SYMBOL_BYTES 16
 #endif
 
-/* How deep relations may nest in a term. */
+/* Maximum nesting depth of relations in a term. */
 #ifndef GRRL_MAX_TERM_DEPTH
 #define GRRL_MAX_TERM_DEPTH 64
 #endif
 
-/* The most states that one recall may search for sub-structures; five bytes of stack each. */
+/* Most states that one recall may search for sub-structures; five bytes of stack each. */
 #ifndef GRRL_RECALL_STATES
 #define GRRL_RECALL_STATES 512
 #endif
 
-/* Search steps that one recall may spend on sub-structures, over all states: a bound of some
- * milliseconds on a PC. What is left out is the farthest. */
+/* Search steps that one recall may spend on sub-structures, over all states: a few milliseconds on
+ * a PC. When they run out, the most distant states go unsearched. */
 #ifndef GRRL_RECALL_STEPS
 #define GRRL_RECALL_STEPS 500000
 #endif
 
-/* Cells of an index: states with the same numbers of links and joints of each type share one. */
+/* Cells of an index. States with the same number of links and of joints of each type
+ * share a cell. */
 #ifndef GRRL_EXPERIENCE_CELLS
 #define GRRL_EXPERIENCE_CELLS 1024
 #endif
@@ -83,8 +85,8 @@ static_assert(GRRL_RECALL_STATES >= 1 && GRRL_RECALL_STEPS >= 1, "a recall may s
 static_assert(GRRL_EXPERIENCE_CELLS >= 1, "an index has a cell");
 
 /*
- * The symbol of a function that fills a struct sized by capacities: its name and those capacities,
- * so that a caller with other ones gets an undefined reference instead of an overrun.
+ * Appends the capacities to the name of a function that fills a struct sized by them. A caller
+ * compiled with other capacities gets an undefined reference instead of an overrun.
  */
 #define GRRL_SIZED(name)                                                                           \
     GRRL_SIZED_EXPAND(name, GRRL_MAX_LINKS, GRRL_SIZED_JOINTS, GRRL_MAX_FEATURES,                  \
@@ -94,7 +96,7 @@ static_assert(GRRL_EXPERIENCE_CELLS >= 1, "an index has a cell");
 #define GRRL_SIZED_PASTE(name, l, j, f, k, p, s, b, c)                                             \
     name##_links##l##_joints##j##_features##f##_frames##k##_places##p##_symbols##s##x##b##_cells##c
 #if GRRL_MAX_JOINTS == 2 * GRRL_MAX_LINKS
-#define GRRL_SIZED_JOINTS 2x /* the default is no plain number */
+#define GRRL_SIZED_JOINTS 2x /* the default is an expression, so it cannot be pasted */
 #else
 #define GRRL_SIZED_JOINTS GRRL_MAX_JOINTS
 #endif

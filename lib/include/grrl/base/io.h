@@ -1,6 +1,4 @@
-/*
- * io.h: how the library reads and writes what it keeps: through two functions of the caller.
- */
+/* io.h: two caller-supplied functions through which the library reads and writes its files. */
 #ifndef GRRL_BASE_IO_H
 #define GRRL_BASE_IO_H
 
@@ -10,7 +8,7 @@
 
 GRRL_API_BEGIN
 
-/* Each returns 0 when all `size` bytes were transferred. The one that a call does not need may be
+/* Each function returns 0 when it transferred all `size` bytes. The one a call does not need may be
  * NULL. */
 struct grrl_io {
     void *context;

@@ -1,6 +1,6 @@
 /*
- * joint_type.h: the two joints of planar mechanisms. Perception finds them, structures are made of
- * them; there are two by design (docs/design.md).
+ * joint_type.h: the two joint types of planar mechanisms, shared by perception and structures.
+ * There are two by design (docs/design.md).
  */
 #ifndef GRRL_BASE_JOINT_TYPE_H
 #define GRRL_BASE_JOINT_TYPE_H

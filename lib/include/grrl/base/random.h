@@ -1,5 +1,5 @@
 /*
- * random.h: the random numbers of the library, a small state the caller owns.
+ * random.h: the library's random number generator, a small state owned by the caller.
  *
  * PCG32 (O'Neill, 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
  * for Random Number Generation"). The same seed and stream give the same numbers on every machine.

@@ -1,11 +1,11 @@
-/* settling.h: when a scene has settled, for everyone who drives a learner. */
+/* settling.h: when a scene counts as settled, for all code that drives a learner. */
 #ifndef GRRL_SETTLING_H
 #define GRRL_SETTLING_H
 
 /*
- * A scene has settled once so many frames in a row show nothing in motion, at the start of a trial
- * and after each push. Perception averages them into a keyframe: ten bring the noise of a point
- * down to a third. Then call grrl_learner_perceive.
+ * A scene has settled after this many consecutive frames without motion, both at the start of a
+ * trial and after each push. Perception averages these frames into a keyframe: ten reduce the noise
+ * of a point to a third. Then call grrl_learner_perceive.
  */
 enum { GRRL_SETTLING_FRAMES = 10 };
 

@@ -1,9 +1,9 @@
 /*
  * status.h: the one result type of every function that can fail.
  *
- * Zero is fine, negative is a failure; a failure leaves the arguments unchanged unless the function
- * says otherwise. The library never prints: what went wrong with outside input is told by a status
- * and, for terms and files, a position.
+ * Zero is success, negative is failure. A failure leaves the arguments unchanged unless the
+ * function says otherwise. The library never prints: a status, and for terms and files a position,
+ * says what is wrong with outside input.
  */
 #ifndef GRRL_STATUS_H
 #define GRRL_STATUS_H
@@ -23,19 +23,19 @@ enum grrl_status {
     GRRL_ERR_ARGUMENT = -1,  /* a parameter is outside its documented range */
     GRRL_ERR_FULL = -2,      /* a fixed capacity is reached */
     GRRL_ERR_SYNTAX = -3,    /* a text is not a term */
-    GRRL_ERR_STRUCTURE = -4, /* a term or graph is no kinematic structure */
+    GRRL_ERR_STRUCTURE = -4, /* a term or graph is not a kinematic structure */
     GRRL_ERR_NUMBER = -5,    /* a measured number is not finite or out of range */
     GRRL_ERR_UNDECIDED = -6, /* a search used up its budget */
-    GRRL_ERR_NONE = -7,      /* there is no such thing: no match, no action, not in the store */
+    GRRL_ERR_NONE = -7,      /* no such thing: no match, no action, not in the store */
     GRRL_ERR_IO = -8,        /* a read or write callback failed */
-    GRRL_ERR_FORMAT = -9,    /* a file is not one of ours */
-    GRRL_ERR_VERSION = -10,  /* a file of ours, of a version or build that does not fit */
-    GRRL_ERR_CORRUPT = -11,  /* a file of ours, damaged */
-    GRRL_ERR_ORDER = -12,    /* a call out of order */
-    GRRL_ERR_POLICY = -13    /* a file of ours, of another policy */
+    GRRL_ERR_FORMAT = -9,    /* not one of our files */
+    GRRL_ERR_VERSION = -10,  /* our file, from an incompatible version or build */
+    GRRL_ERR_CORRUPT = -11,  /* our file, damaged */
+    GRRL_ERR_ORDER = -12,    /* a function was called out of order */
+    GRRL_ERR_POLICY = -13    /* our file, from another policy */
 };
 
-/* A short English text without a full stop, never NULL. */
+/* A short English phrase without a full stop; never NULL. */
 const char *grrl_status_text(enum grrl_status status);
 
 GRRL_API_END

@@ -1,9 +1,9 @@
 /*
- * relational_state.h: what perception believes, as the state that is learned on: a graph whose
- * vertices are links with their properties and whose edges are joints (paper, section III).
+ * relational_state.h: turns perception's estimate into the learner's state: a graph with links and
+ * their properties as vertices and joints as edges (paper, section III).
  *
- * A new property of links is a place in the label: set it in grrl_relational_state_of, and name its
- * atoms in term.h.
+ * A new link property is one more place in the label: set it in grrl_relational_state_of, and name
+ * its atoms in term.h.
  */
 #ifndef GRRL_LEARNER_RELATIONAL_STATE_H
 #define GRRL_LEARNER_RELATIONAL_STATE_H
@@ -14,12 +14,12 @@
 
 GRRL_API_BEGIN
 
-/* The size of a link: GRRL_PROPERTY_LARGE from a length of `large_m` on, else GRRL_PROPERTY_SMALL.
- */
+/* The size of a link: GRRL_PROPERTY_LARGE if its length is at least `large_m`, else
+ * GRRL_PROPERTY_SMALL. */
 grrl_property grrl_size_of(const struct grrl_body *body, float large_m);
 
-/* The state of a model: vertex i is body i, the order of edges is that of discovery. names and
- * edges as in grrl_graph_from_term; either may be NULL. */
+/* The state of a model: vertex i is body i, and edges are in order of discovery. names and edges as
+ * in grrl_graph_from_term; either may be NULL. */
 void grrl_relational_state_of(const struct grrl_model *model, float large_m,
                               struct grrl_graph *state, struct grrl_name *names,
                               struct grrl_edge *edges);

@@ -1,16 +1,16 @@
 /*
  * match.h: VF2 graph matching without recursion or heap, bounded by a node budget.
  *
- * Cordella, Foggia, Sansone, Vento, "An improved algorithm for matching large graphs" (2001), the
- * paper's reference 5: a partial mapping grows pair by pair under feasibility rules (consistency
- * with the mapped neighbours, look-ahead on the rest). Here the candidates of a pair are one row of
- * a joint type's adjacency masks, and the look-ahead is a number of each vertex made beforehand:
- * its colour under colour refinement for isomorphism, counts that can only grow in a larger
- * structure for monomorphism.
+ * Cordella, Foggia, Sansone, Vento, "An improved algorithm for matching large graphs" (2001),
+ * reference 5 of the paper. A partial mapping grows pair by pair under feasibility rules:
+ * consistency with the mapped neighbours, and look-ahead over the rest. Here the candidates for a
+ * pair come from one row of a joint type's adjacency masks. The look-ahead is one number per
+ * vertex, computed beforehand: for isomorphism its colour under colour refinement, for monomorphism
+ * counts that can only grow in a larger structure.
  *
- * One answer: grrl_match_find, or grrl_match_find_planned for graphs that are matched often: each
- * has a plan made once by grrl_match_plan_of. All mappings: grrl_match_begin (or
- * grrl_match_begin_planned), grrl_match_fix if wanted, then grrl_match_next until it no longer
+ * For one answer call grrl_match_find, or grrl_match_find_planned for graphs that are matched
+ * often; grrl_match_plan_of makes a graph's plan once. For all mappings call grrl_match_begin (or
+ * grrl_match_begin_planned), grrl_match_fix if needed, then grrl_match_next until it no longer
  * returns GRRL_OK.
  */
 #ifndef GRRL_MATCH_H
@@ -23,41 +23,40 @@
 GRRL_API_BEGIN
 
 enum grrl_match_kind {
-    GRRL_MATCH_ISOMORPHISM, /* one to one and onto, edges and non-edges kept */
-    GRRL_MATCH_MONOMORPHISM /* the pattern's links into the target's, every edge of the pattern kept
-                             */
+    GRRL_MATCH_ISOMORPHISM, /* one to one and onto, preserving edges and non-edges */
+    GRRL_MATCH_MONOMORPHISM /* one to one, preserving every edge of the pattern */
 };
 
-/* No vertex, in a mapping. */
+/* In a mapping: no vertex. */
 enum { GRRL_UNMAPPED = 0xff };
 
-/* Search steps (candidate pairs tried) before a search gives up as undecided. */
+/* Search steps (candidate pairs tried) before the search gives up as undecided. */
 #ifndef GRRL_MATCH_BUDGET
 #define GRRL_MATCH_BUDGET 20000
 #endif
 
-/* One vertex of a pattern in the order of the search. */
+/* One pattern vertex, in search order. */
 struct grrl_match_step {
     /* private */
     uint8_t vertex;
-    uint8_t parent; /* an earlier neighbour, GRRL_UNMAPPED at the start of a component */
+    uint8_t parent; /* an earlier neighbour; GRRL_UNMAPPED at the start of a component */
     uint8_t type;   /* of the joint to it */
     uint8_t ties;   /* further earlier neighbours: the vertex closes loops */
 };
 
-/* What matching needs of a graph under a mask, whether it is the pattern or the target. */
+/* What matching precomputes for a graph under a mask; serves as pattern or target. */
 struct grrl_match_plan {
     /* private */
     const struct grrl_graph *graph;
     uint8_t joints[GRRL_JOINT_TYPES];
-    uint8_t rank[GRRL_MAX_LINKS]; /* of a vertex's colour among the colours */
+    uint8_t rank[GRRL_MAX_LINKS]; /* rank of a vertex's colour among all colours */
     uint32_t hash;                /* of the colours: equal for isomorphic graphs */
     struct grrl_signature monotone;
     grrl_label label[GRRL_MAX_LINKS]; /* under the mask */
-    uint32_t colour[GRRL_MAX_LINKS];  /* per vertex: label and surroundings */
-    uint32_t growing[GRRL_MAX_LINKS]; /* per vertex: four counts, none smaller in a larger graph */
+    uint32_t colour[GRRL_MAX_LINKS];  /* per vertex: hash of its label and surroundings */
+    uint32_t growing[GRRL_MAX_LINKS]; /* per vertex: four counts, never smaller in a larger graph */
     uint32_t cell[GRRL_MAX_LINKS];    /* per rank: the vertices of that colour */
-    uint32_t earlier[GRRL_MAX_LINKS]; /* per step: the vertices of the steps before */
+    uint32_t earlier[GRRL_MAX_LINKS]; /* per step: the vertices of earlier steps */
     struct grrl_match_step step[GRRL_MAX_LINKS];
 };
 
@@ -65,38 +64,40 @@ struct grrl_match {
     /* private */
     const struct grrl_match_plan *pattern;
     const struct grrl_match_plan *target;
-    const struct grrl_match_plan *order; /* whose steps are taken */
+    const struct grrl_match_plan *order; /* the plan whose step order is used */
     enum grrl_match_kind kind;
-    uint32_t budget;                     /* steps left */
+    uint32_t budget;                     /* search steps left */
     int depth;                           /* vertices mapped; negative: no further mapping */
-    uint32_t used;                       /* their images */
-    uint32_t allowed[GRRL_MAX_LINKS];    /* per pattern vertex: targets */
+    uint32_t used;                       /* targets in use */
+    uint32_t allowed[GRRL_MAX_LINKS];    /* per pattern vertex: permitted targets */
     uint32_t candidates[GRRL_MAX_LINKS]; /* per depth: targets not yet tried */
     uint8_t image[GRRL_MAX_LINKS];       /* per pattern vertex */
-    struct grrl_match_plan own[2];       /* of graphs that came without */
+    struct grrl_match_plan own[2];       /* plans of graphs given without one */
 };
 
 /*
- * Makes the plan of a graph, which must outlive it and stay as it is; mask says which properties
- * count. Cost: a few hundred nanoseconds, linear in links and joints but for a sort of the links.
+ * Makes the plan of a graph. The graph must outlive the plan and must not change; mask selects the
+ * properties that count. Cost: a few hundred nanoseconds, linear in links and joints except for a
+ * sort of the links.
  */
 void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *graph,
                         grrl_label mask);
 
 /*
- * One mapping of pattern into target, or that there is none: map[i] (GRRL_MAX_LINKS of them) is the
- * target vertex of pattern vertex i. mask says which properties count. GRRL_OK; GRRL_ERR_NONE.
+ * Finds one mapping of pattern into target, or shows that there is none. map[i] (GRRL_MAX_LINKS of
+ * them) is the target vertex of pattern vertex i. mask selects the properties that count. GRRL_OK;
+ * GRRL_ERR_NONE.
  *
- * Where another method answers for certain, a search of a few hundred steps is followed by it:
- * canonical forms (canonical.h) for isomorphism, grrl_match_tree for a tree in a forest; both take
- * microseconds. Anything else is GRRL_ERR_UNDECIDED beyond `budget` search steps.
+ * If a search of a few hundred steps does not answer, an exact method follows where one exists:
+ * canonical forms (canonical.h) for isomorphism, grrl_match_tree for a tree in a forest. Both take
+ * microseconds. Otherwise the result is GRRL_ERR_UNDECIDED beyond `budget` search steps.
  */
 GRRL_MUST_USE enum grrl_status grrl_match_find(enum grrl_match_kind kind,
                                                const struct grrl_graph *pattern,
                                                const struct grrl_graph *target, grrl_label mask,
                                                uint32_t budget, uint8_t *map);
 
-/* The same with plans made under the same mask. */
+/* Like grrl_match_find, with plans made under the same mask. */
 GRRL_MUST_USE enum grrl_status grrl_match_find_planned(enum grrl_match_kind kind,
                                                        const struct grrl_match_plan *pattern,
                                                        const struct grrl_match_plan *target,
@@ -104,35 +105,35 @@ GRRL_MUST_USE enum grrl_status grrl_match_find_planned(enum grrl_match_kind kind
 
 /*
  * Prepares a search for mappings of pattern into target. Both graphs must outlive the search. mask
- * says which properties count. budget: search steps over all calls of grrl_match_next. A match may
- * not be copied.
+ * selects the properties that count. budget: search steps over all calls of grrl_match_next. A
+ * match must not be copied.
  */
 void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
                       const struct grrl_graph *pattern, const struct grrl_graph *target,
                       grrl_label mask, uint32_t budget);
 
-/* The same with plans made under the same mask, which must outlive the search. */
+/* Like grrl_match_begin, with plans made under the same mask, which must outlive the search. */
 void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,
                               const struct grrl_match_plan *pattern,
                               const struct grrl_match_plan *target, uint32_t budget);
 
-/* Only mappings that send this vertex of the pattern to that one of the target; between begin and
- * the first next, as often as wanted. */
+/* Restricts the search to mappings of this pattern vertex to this target vertex. May be called
+ * repeatedly between begin and the first next. */
 void grrl_match_fix(struct grrl_match *match, uint8_t pattern_vertex, uint8_t target_vertex);
 
 /*
- * The next mapping, as in grrl_match_find.
- * GRRL_OK; GRRL_ERR_NONE: no further mapping; GRRL_ERR_UNDECIDED: the budget is used up.
+ * Finds the next mapping, as in grrl_match_find. GRRL_OK; GRRL_ERR_NONE: no further mapping;
+ * GRRL_ERR_UNDECIDED: the budget is used up.
  */
 GRRL_MUST_USE enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map);
 
 /*
- * All targets that some mapping (monomorphism) of a tree into a forest sends one vertex of it to,
- * as a bit mask; map, if not NULL, is one of the mappings, if there is any. Plans made under the
- * same mask. GRRL_ERR_UNDECIDED: the pattern is no tree, or the target no forest. Without a search:
- * rooted subtrees from the leaves inwards, children to neighbours by bipartite matching (Matula,
- * "Subtree isomorphism in O(n^5/2)", 1978; here O(n^3) at worst, with 4 n bytes for each link of
- * stack).
+ * Finds every target vertex onto which some mapping (monomorphism) of a tree into a forest sends
+ * pattern_vertex, as a bit mask in *images. map, if not NULL, receives one of the mappings, if
+ * there is any. Both plans must be made under the same mask. GRRL_ERR_UNDECIDED: the pattern is not
+ * a tree, or the target not a forest. The method needs no search: it works on rooted subtrees from
+ * the leaves inwards and assigns children to neighbours by bipartite matching (Matula, "Subtree
+ * isomorphism in O(n^5/2)", 1978). Cost: O(n^3) at worst, and 4 n bytes of stack per link.
  */
 GRRL_MUST_USE enum grrl_status grrl_match_tree(const struct grrl_match_plan *pattern,
                                                const struct grrl_match_plan *target,
@@ -140,9 +141,9 @@ GRRL_MUST_USE enum grrl_status grrl_match_tree(const struct grrl_match_plan *pat
                                                uint8_t *map);
 
 /*
- * Orbits of the automorphism group: orbit[i] is the smallest vertex that some automorphism maps i
- * onto. budget: search steps for each pair of vertices. GRRL_ERR_UNDECIDED: some pair could not be
- * decided within it and was taken as not symmetric.
+ * Computes the orbits of the automorphism group: orbit[i] is the smallest vertex onto which some
+ * automorphism maps i. budget: search steps for each pair of vertices. GRRL_ERR_UNDECIDED: some
+ * pair stayed undecided within it and is treated as not symmetric.
  */
 GRRL_MUST_USE enum grrl_status grrl_match_orbits(const struct grrl_graph *graph, grrl_label mask,
                                                  uint32_t budget, uint8_t *orbit);

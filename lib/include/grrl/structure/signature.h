@@ -1,9 +1,9 @@
 /*
  * signature.h: counts of a structure that can only grow when links or joints are added.
  *
- * If a graph is a sub-structure of another, each of its counts is at most the other's; so most
- * pairs are told apart without a search. Seven bits a count, full at 127, eight counts a word, so
- * that a comparison of eight is one subtraction.
+ * If one graph is a sub-structure of another, each of its counts is at most the other's. This rules
+ * out most pairs without a search. A count has seven bits and saturates at 127; a word holds eight
+ * counts, so one subtraction compares eight.
  */
 #ifndef GRRL_SIGNATURE_H
 #define GRRL_SIGNATURE_H
@@ -14,11 +14,11 @@
 GRRL_API_BEGIN
 
 /*
- * The first two words are about the shape: links; joints by type; links with two or more revolute,
+ * The first two words describe the shape: links; joints by type; links with two or more revolute,
  * two or more prismatic, three or more joints; four or more; loops; then pairs of joints at one
- * link by types (three counts), chains of three joints by types (five counts). The others count
- * under the mask: links by label, joints by type and labels, pairs of joints by types and labels;
- * labels share counts by a hash.
+ * link by types (three counts) and chains of three joints by types (five counts). The other words
+ * count under the mask: links by label, joints by type and labels, pairs of joints by types and
+ * labels. A hash assigns labels to counts, so labels may share one.
  */
 enum { GRRL_SIGNATURE_SHAPE = 2, GRRL_SIGNATURE_WORDS = 5 };
 
@@ -31,8 +31,8 @@ struct grrl_signature {
 void grrl_signature_of(const struct grrl_graph *graph, grrl_label mask,
                        struct grrl_signature *signature);
 
-/* Whether a graph with the first signature could be a sub-structure of one with the second, made
- * under the same mask; shape_only: whatever the properties. False is certain. */
+/* Whether a graph with signature `part` could be a sub-structure of one with signature `whole`.
+ * Both must be made under the same mask; shape_only ignores the properties. False is certain. */
 static inline bool grrl_signature_within(const struct grrl_signature *part,
                                          const struct grrl_signature *whole, bool shape_only)
 {
@@ -44,9 +44,9 @@ static inline bool grrl_signature_within(const struct grrl_signature *part,
 }
 
 /*
- * What longer paths tell of the shape, whatever the properties: three bits for how many chains of
- * four joints there are by types, and for three joints at one link by types, full at seven; one bit
- * for whether there is a chain of five or six joints by types, and for whether there are two.
+ * Counts of longer paths, ignoring the properties. Three bits each, saturating at seven: chains of
+ * four joints by types, and three joints at one link by types. One bit each: whether there is at
+ * least one chain of five or six joints by types, and whether there are at least two.
  */
 enum { GRRL_PATH_COUNTS = 2, GRRL_PATH_WORDS = 5 };
 
@@ -55,11 +55,12 @@ struct grrl_paths {
     uint32_t word[GRRL_PATH_WORDS];
 };
 
-/* Cost: a step for each chain of up to six joints, at most some thousands; beyond, all is full. */
+/* Cost: one step for each chain of up to six joints, at most a few thousand; beyond that all counts
+ * saturate. */
 void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths);
 
-/* Whether a graph with the first could be a sub-structure of one with the second. False is
- * certain. */
+/* Whether a graph with paths `part` could be a sub-structure of one with `whole`.
+ * False is certain. */
 static inline bool grrl_paths_within(const struct grrl_paths *part, const struct grrl_paths *whole)
 {
     const uint32_t full = UINT32_C(0x88888888);

@@ -13,16 +13,17 @@
  *              stands alone
  *
  * An identifier is a letter followed by letters, digits and underscores, shorter than
- * GRRL_SYMBOL_BYTES. Its place says what it is. The last word in L(..) is the name, as is a word
- * without L(..); the words before it are properties: L(s, l) is a small link named l, L(s) and s
- * are a link named s. A letter is a relation only before '(': R(R, P) joins the links R and P.
+ * GRRL_SYMBOL_BYTES. Its place determines its role. The last word in L(..) is the name, as is a
+ * word without L(..); the words before it are properties. So L(s, l) is a small link named l, while
+ * L(s) and s are a link named s. A letter is a relation only before '(': R(R, P) joins the links R
+ * and P.
  *
  * A joint connects the link written last in its first argument with the link written first in each
- * further argument. graph.h turns a term into the graph this describes, and back.
+ * further argument. graph.h converts a term to the graph it describes, and back.
  *
  * Order of calls: grrl_term_store_init, then parse or make, print, unify, substitute. A store is a
- * stack of nodes: grrl_term_mark remembers its height and grrl_term_release takes everything newer
- * away. A term is a number in its store, zero is none.
+ * stack of nodes: grrl_term_mark returns its height, and grrl_term_release removes everything
+ * newer. A term is the number of a node in its store; zero is no term.
  */
 #ifndef GRRL_TERM_H
 #define GRRL_TERM_H
@@ -58,22 +59,23 @@ enum grrl_name_kind {
     GRRL_NAME_SYMBOL      /* blade1 */
 };
 
-/* Different identifiers that a store can know as names: those of two structures to be matched. */
+/* Distinct identifiers a store can hold as names: enough for two structures to be matched. */
 enum { GRRL_MAX_NAMES = 2 * GRRL_MAX_LINKS };
 
-/* A name as text with its zero: an identifier, or f65535. */
+/* A name as text with the terminating zero: an identifier, or f65535. */
 enum { GRRL_NAME_BYTES = GRRL_SYMBOL_BYTES > 7 ? GRRL_SYMBOL_BYTES : 7 };
 
-/* Who a link is. The number is 0 for the background, and the store's own for an identifier. */
+/* The name of a link. The number is 0 for the background; for an identifier the
+ * store assigns it. */
 struct grrl_name {
     uint16_t kind; /* enum grrl_name_kind */
     uint16_t number;
 };
 
-/* A property: 0 none, 1 .. 127 an atom of the store, 128 + n the variable vn (n <= 127). */
+/* A property: 0 is none, 1 .. 127 an atom of the store, 128 + n the variable vn (n <= 127). */
 typedef uint8_t grrl_property;
 
-/* The atoms every store knows from the start, with these numbers. */
+/* The atoms that every store knows from the start. */
 enum { GRRL_PROPERTY_SMALL = 1, GRRL_PROPERTY_LARGE = 2 };
 
 /* The six directions of the paper, measured from the link's principal axis. */
@@ -100,15 +102,16 @@ struct grrl_term_store {
     uint8_t n_symbols;
     uint8_t n_names;
     char symbols[GRRL_MAX_SYMBOLS][GRRL_SYMBOL_BYTES];
-    char names[GRRL_MAX_NAMES][GRRL_SYMBOL_BYTES]; /* apart: names do not number properties */
+    char names[GRRL_MAX_NAMES]
+              [GRRL_SYMBOL_BYTES]; /* separate, so that names do not use up property numbers */
 };
 
-/* Where a text stopped being a term: byte offset from 0, line and column (in characters) from 1. */
+/* Where a text stops being a term: byte offset from 0, line and column (in characters) from 1. */
 struct grrl_term_error {
     size_t offset;
     uint32_t line;
     uint32_t column;
-    char message[120]; /* what was expected and what stands there */
+    char message[120]; /* what was expected and what was found */
 };
 
 /* Variables bound to names (of links) or to properties. */
@@ -122,64 +125,64 @@ struct grrl_substitution {
     } binding[2 * GRRL_MAX_LINKS];
 };
 
-/* Uses `capacity` nodes of the caller, capacity >= 2; node 0 stays unused. Sets the atoms s and l.
- */
+/* Initialises a store with `capacity` nodes of the caller, capacity >= 2; node 0 stays unused. Adds
+ * the atoms s and l. */
 void grrl_term_store_init(struct grrl_term_store *store, struct grrl_term_node *nodes,
                           uint16_t capacity);
 
 uint16_t grrl_term_mark(const struct grrl_term_store *store);
 void grrl_term_release(struct grrl_term_store *store, uint16_t mark);
 
-/* The node of a term; the term must be one of this store. */
+/* The node of a term, which must belong to this store. */
 const struct grrl_term_node *grrl_term_node_at(const struct grrl_term_store *store, grrl_term term);
 
 /*
- * The number of an atom, added when it is new and kept until grrl_term_store_init. An atom is an
- * identifier with a lower-case first letter, not of the form l3, f3, v3 or lb. GRRL_ERR_SYNTAX,
- * GRRL_ERR_FULL.
+ * Finds the number of an atom. A new atom is added and kept until grrl_term_store_init. An atom is
+ * an identifier that starts with a lower-case letter and is not of the form l3, f3, v3 or lb.
+ * GRRL_ERR_SYNTAX, GRRL_ERR_FULL.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_intern(struct grrl_term_store *store, const char *text,
                                                 size_t length, grrl_property *property);
 
-/* The text of an atom, NULL for none or a variable. */
+/* The text of an atom; NULL for none or a variable. */
 const char *grrl_term_symbol(const struct grrl_term_store *store, grrl_property property);
 
 /*
- * The name that an identifier is, added when it is new and kept until grrl_term_store_init.
- * GRRL_ERR_SYNTAX, also for the forms l3, f3, v3 and lb, whose struct needs no store;
- * GRRL_ERR_FULL at GRRL_MAX_NAMES.
+ * Finds the name for an identifier. A new name is added and kept until grrl_term_store_init.
+ * GRRL_ERR_SYNTAX, also for the forms l3, f3, v3 and lb, which need no store; GRRL_ERR_FULL at
+ * GRRL_MAX_NAMES.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_intern_name(struct grrl_term_store *store,
                                                      const char *text, size_t length,
                                                      struct grrl_name *name);
 
-/* Writes a name of this store as a term has it, "?" for one that is none. Returns text. */
+/* Writes a name of this store as it appears in a term, or "?" if it is not one. Returns text. */
 const char *grrl_term_name_text(const struct grrl_term_store *store, struct grrl_name name,
                                 char text[GRRL_NAME_BYTES]);
 
-/* properties may be NULL when n is 0; "none" at the last places is left away. */
+/* Makes a link. properties may be NULL if n is 0; trailing "none" properties are dropped. */
 GRRL_MUST_USE enum grrl_status grrl_term_make_link(struct grrl_term_store *store,
                                                    struct grrl_name name,
                                                    const grrl_property *properties, uint8_t n,
                                                    grrl_term *term);
 
 /*
- * A relation or conjunction over n >= 2 argument terms, which become its own: a node has one
- * parent, so that an argument used twice must be made twice (or copied by substitution). The parts
- * of a conjunction within a conjunction become parts of the outer one. GRRL_ERR_ARGUMENT for an
- * action as an argument; GRRL_ERR_FULL, also beyond GRRL_MAX_TERM_DEPTH.
+ * Makes a relation or conjunction over n >= 2 argument terms, and takes ownership of them. A node
+ * has one parent, so an argument used twice must be made twice (or copied by substitution). A
+ * conjunction inside a conjunction is flattened into the outer one. GRRL_ERR_ARGUMENT if an
+ * argument is an action; GRRL_ERR_FULL, also beyond GRRL_MAX_TERM_DEPTH.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_make(struct grrl_term_store *store,
                                               enum grrl_term_kind kind, const grrl_term *arguments,
                                               uint16_t n, grrl_term *term);
 
-/* direction: an index into grrl_direction_deg. */
+/* Makes an action. direction: an index into grrl_direction_deg. */
 GRRL_MUST_USE enum grrl_status grrl_term_make_action(struct grrl_term_store *store, grrl_term link,
                                                      uint8_t direction, grrl_term *term);
 
 /*
- * Reads one term from `length` bytes of UTF-8 (white space is free, a direction may carry a degree
- * sign). On failure the store is unchanged and *error, if not NULL, says where and what was
+ * Reads one term from `length` bytes of UTF-8. White space is ignored; a direction may carry a
+ * degree sign. On failure the store is unchanged and *error, if not NULL, says where and what was
  * expected. GRRL_ERR_SYNTAX, GRRL_ERR_FULL. Cost: linear in length.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_parse(struct grrl_term_store *store, const char *text,
@@ -187,24 +190,24 @@ GRRL_MUST_USE enum grrl_status grrl_term_parse(struct grrl_term_store *store, co
                                                struct grrl_term_error *error);
 
 /*
- * Writes the term with its terminating zero. *length becomes the bytes the whole text takes without
- * the zero, also when `capacity` is too small (GRRL_ERR_FULL, the text is cut). capacity >= 1;
+ * Writes the term with its terminating zero. *length is set to the length of the whole text without
+ * the zero, even if `capacity` is too small (GRRL_ERR_FULL; the text is truncated). capacity >= 1;
  * length may be NULL.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_print(const struct grrl_term_store *store, grrl_term term,
                                                size_t capacity, char *text, size_t *length);
 
 /*
- * Unifies two terms of one shape: same relations, same arity, same order. Names and properties must
- * be equal or one of them a variable, which is bound. Bit i of ignored_properties drops the
- * property at place i on both sides. Extends *substitution (start from n = 0); on failure it is as
- * before. GRRL_ERR_NONE when they do not unify. Paper, section V-D.
+ * Unifies two terms of the same shape: same relations, same arity, same order. Names and properties
+ * must be equal, or one of the two must be a variable, which is then bound. Bit i of
+ * ignored_properties drops the property at place i on both sides. Extends *substitution (start with
+ * n = 0); on failure it is unchanged. GRRL_ERR_NONE if they do not unify. Paper, section V-D.
  */
 GRRL_MUST_USE enum grrl_status grrl_term_unify(const struct grrl_term_store *store, grrl_term a,
                                                grrl_term b, uint32_t ignored_properties,
                                                struct grrl_substitution *substitution);
 
-/* A copy of the term with every bound variable replaced. */
+/* Copies the term, replacing every bound variable. */
 GRRL_MUST_USE enum grrl_status grrl_term_substitute(struct grrl_term_store *store, grrl_term term,
                                                     const struct grrl_substitution *substitution,
                                                     grrl_term *copy);

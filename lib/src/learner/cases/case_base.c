@@ -1,4 +1,4 @@
-/* case_base.c: kernel regression over the rewards met in contexts. */
+/* case_base.c: kernel regression over rewards, by context. */
 #include "grrl/learner/cases/case_base.h"
 
 #include <string.h>
@@ -6,11 +6,11 @@
 #include "base/range.h"
 #include "grrl/base/geometry.h"
 
-/* Nothing is impossible, whatever the rewards met. */
-#define LEAST_EXPECTED 0.05f
+/* Keeps likelihoods away from zero: no outcome is impossible. */
+#define MIN_EXPECTED 0.05f
 
-/* So that a few pushes as known undo it. */
-#define LEAST_LOG_ODDS (-4.0f)
+/* Limits the doubt, so that a few pushes that go as expected remove it. */
+#define MIN_LOG_ODDS (-4.0f)
 
 void grrl_case_config_default(struct grrl_case_config *config)
 {
@@ -54,8 +54,8 @@ static unsigned at_most(unsigned x, unsigned most)
     return x < most ? x : most;
 }
 
-/* How likely it is that the object is as known. */
-static float trust(const struct grrl_case_base *base)
+/* P(object as known). */
+static float probability_as_known(const struct grrl_case_base *base)
 {
     return 1.0f / (1.0f + grrl_exp(-base->log_odds));
 }
@@ -65,10 +65,10 @@ static unsigned nearest(float x)
     return (unsigned)(x + 0.5f);
 }
 
-/* Joins the rewards of the last trial to the older ones, the latest `memory` of all. Of the older
- * ones the share `kept` counts on, though one at least; the newer ones count as in the trial as far
- * as older ones do not. */
-static void join_rewards(const struct grrl_case_config *config, float kept, struct grrl_case *met)
+/* Merges the rewards of the last trial into the older ones and keeps the latest `memory`. Of the
+ * older ones the share `kept` continues to count, but at least one. The newer ones keep their extra
+ * weight to the extent that older ones are dropped. */
+static void merge_rewards(const struct grrl_case_config *config, float kept, struct grrl_case *met)
 {
     float times = 1.0f + config->present * (1.0f - kept);
     unsigned newer = at_most(nearest((float)met->n_new * times), config->memory);
@@ -87,9 +87,9 @@ void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_
 {
     if (base->n == 0)
         return;
-    float kept = base->log_odds < 0.0f ? 2.0f * trust(base) : 1.0f;
+    float kept = base->log_odds < 0.0f ? 2.0f * probability_as_known(base) : 1.0f;
     for (uint32_t i = 0; i < base->n; i++)
-        join_rewards(config, kept, &base->cases[i]);
+        merge_rewards(config, kept, &base->cases[i]);
     base->log_odds = config->confidence;
 }
 
@@ -103,23 +103,24 @@ static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_
     return n;
 }
 
-/* The rewards met, each by how much it says of one context. */
+/* The rewards, weighted by their relevance to one context. */
 struct evidence {
-    float older; /* their weight */
+    float older; /* total weight */
     float newer;
-    float older_sum; /* of rewards times their weight */
+    float older_sum; /* sum of weighted rewards */
     float newer_sum;
 };
 
-/* Also finds the closest case, for the estimate. */
-static void gather(const struct grrl_case_base *base, const struct grrl_case_config *config,
-                   const struct grrl_context *context, struct evidence *evidence,
-                   struct grrl_estimate *estimate)
+/* Sums the evidence for one context, and finds the closest case for the estimate. */
+static void gather_evidence(const struct grrl_case_base *base,
+                            const struct grrl_case_config *config,
+                            const struct grrl_context *context, struct evidence *evidence,
+                            struct grrl_estimate *estimate)
 {
     float weight_of[GRRL_CONTEXT_PARTS + 1] = {1.0f};
     for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; i++)
         weight_of[i] = weight_of[i - 1] * config->mismatch;
-    float trusted = trust(base);
+    float p_known = probability_as_known(base);
     float closest_weight = 0.0f;
     *evidence = (struct evidence){.older = 0.0f};
     *estimate = (struct grrl_estimate){.closest = GRRL_NO_CASE, .mismatches = UINT8_MAX};
@@ -132,7 +133,7 @@ static void gather(const struct grrl_case_base *base, const struct grrl_case_con
         evidence->newer += weight_of[mismatches] * newer;
         evidence->older_sum += weight_of[mismatches] * older * met->value;
         evidence->newer_sum += weight_of[mismatches] * newer * met->value_new;
-        float weight = trusted * older + newer;
+        float weight = p_known * older + newer;
         if (mismatches < estimate->mismatches ||
             (mismatches == estimate->mismatches && weight > closest_weight)) {
             estimate->mismatches = mismatches;
@@ -142,12 +143,12 @@ static void gather(const struct grrl_case_base *base, const struct grrl_case_con
     }
 }
 
-/* The mean over the prior and the rewards, the older ones as much as they are trusted. */
+/* The mean over the prior and the rewards; older ones are weighted by P(object as known). */
 static float mean(const struct grrl_case_config *config, const struct evidence *evidence,
-                  float trusted)
+                  float p_known)
 {
-    float sum = config->prior_weight * config->prior + trusted * evidence->older_sum;
-    float weight = config->prior_weight + trusted * evidence->older;
+    float sum = config->prior_weight * config->prior + p_known * evidence->older_sum;
+    float weight = config->prior_weight + p_known * evidence->older;
     return (sum + evidence->newer_sum) / (weight + evidence->newer);
 }
 
@@ -155,40 +156,41 @@ void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_ca
                          const struct grrl_context *context, struct grrl_estimate *estimate)
 {
     struct evidence evidence;
-    gather(base, config, context, &evidence, estimate);
-    float trusted = trust(base);
-    float weight = config->prior_weight + trusted * evidence.older + evidence.newer;
-    float reach = config->bound / grrl_sqrt(weight);
-    estimate->value = mean(config, &evidence, trusted);
-    estimate->lower = estimate->value - reach;
-    estimate->upper = estimate->value + reach;
+    gather_evidence(base, config, context, &evidence, estimate);
+    float p_known = probability_as_known(base);
+    float weight = config->prior_weight + p_known * evidence.older + evidence.newer;
+    float margin = config->bound / grrl_sqrt(weight);
+    estimate->value = mean(config, &evidence, p_known);
+    estimate->lower = estimate->value - margin;
+    estimate->upper = estimate->value + margin;
     estimate->weight = weight;
 }
 
-/* The log likelihood that a push finds something, or nothing, when so much is expected: what it
- * finds is a count (of links and joints), taken for Poisson. */
+/* The log likelihood that a push finds something (or nothing), given the expected reward. The
+ * reward is a count of links and joints, modelled as Poisson. */
 static float log_likelihood(float expected, bool found)
 {
-    float rate = expected > LEAST_EXPECTED ? expected : LEAST_EXPECTED;
+    float rate = expected > MIN_EXPECTED ? expected : MIN_EXPECTED;
     return found ? grrl_log(1.0f - grrl_exp(-rate)) : -rate;
 }
 
-/* Weighs "as known" against "another" by what a push found. Not how much: a first push that reveals
- * four links instead of two is no sign of another object. */
-static void weigh(struct grrl_case_base *base, const struct grrl_case_config *config,
-                  const struct grrl_context *context, float reward)
+/* Bayes update of "object as known" against "object changed" by a push's outcome. Only whether it
+ * found something counts, not how much: a first push that reveals four links instead of two does
+ * not indicate another object. */
+static void update_log_odds(struct grrl_case_base *base, const struct grrl_case_config *config,
+                            const struct grrl_context *context, float reward)
 {
     struct evidence evidence;
     struct grrl_estimate estimate;
-    gather(base, config, context, &evidence, &estimate);
+    gather_evidence(base, config, context, &evidence, &estimate);
     bool found = reward > 0.0f;
     float log_odds = base->log_odds + log_likelihood(mean(config, &evidence, 1.0f), found) -
                      log_likelihood(mean(config, &evidence, 0.0f), found);
     log_odds = log_odds > config->confidence ? config->confidence : log_odds;
-    base->log_odds = log_odds < LEAST_LOG_ODDS ? LEAST_LOG_ODDS : log_odds;
+    base->log_odds = log_odds < MIN_LOG_ODDS ? MIN_LOG_ODDS : log_odds;
 }
 
-/* The case of exactly this context, or a new one without rewards. */
+/* Finds the case with exactly this context, or adds one without rewards. */
 static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_context *context)
 {
     uint32_t oldest = 0;
@@ -211,7 +213,7 @@ static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_conte
 uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
                           const struct grrl_context *context, float reward)
 {
-    weigh(base, config, context, reward);
+    update_log_odds(base, config, context, reward);
     if (base->capacity == 0)
         return GRRL_NO_CASE;
     uint32_t index = find_or_add(base, context);

@@ -79,7 +79,7 @@ static enum grrl_status read_header(const struct grrl_case_base *base, struct gr
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
-/* Written so that a NaN is in no range. */
+/* Written so that NaN is never in range. */
 static bool is_within_most(float x)
 {
     return x >= -GRRL_MAX_REWARD && x <= GRRL_MAX_REWARD;
@@ -97,12 +97,12 @@ static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odd
 static bool is_context(const struct grrl_context *context)
 {
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        if (context->part[i] > grrl_context_most[i])
+        if (context->part[i] > grrl_context_max[i])
             return false;
     return true;
 }
 
-/* Whether a case could have been saved behind those read so far: each context and time is once. */
+/* Whether a case is consistent with those read so far: contexts and times must be unique. */
 static bool is_new(const struct grrl_case_base *base, const struct grrl_case *met)
 {
     for (uint32_t i = 0; i < base->n; i++)

@@ -1,4 +1,4 @@
-/* context.c: what surrounds a link, and what was tried on it, in a few small numbers. */
+/* context.c: encodes a link's surroundings and earlier pushes in a few small numbers. */
 #include "grrl/learner/cases/context.h"
 
 #include <string.h>
@@ -7,25 +7,25 @@
 #include "grrl/learner/grounding.h"
 #include "grrl/structure/graph.h"
 
-/* A neighbour lies ahead or behind within about 70 degrees of the push. */
+/* A neighbour counts as ahead or behind within about 70 degrees of the push. */
 #define AHEAD_COSINE 0.35f
 
-/* Shorter differences of length may be noise. */
+/* A smaller ratio of lengths may be noise. */
 #define LONGER 1.15f
 
 enum { AHEAD = 1, BEHIND = 2 };
-enum { MOST_TRIED = 3, MOST_JOINTS = 2, MOST_OTHERS_TRIED = 2, MOST_LONGER = 2, MOST_OCTAVE = 4 };
+enum { MAX_TRIED = 3, MAX_JOINTS = 2, MAX_OTHERS_TRIED = 2, MAX_LONGER = 2, MAX_OCTAVE = 4 };
 
-const uint8_t grrl_context_most[GRRL_CONTEXT_PARTS] = {
+const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_DIRECTION] = 2,
-    [GRRL_CONTEXT_LENGTH] = MOST_OCTAVE,
-    [GRRL_CONTEXT_TRIED] = MOST_TRIED,
+    [GRRL_CONTEXT_LENGTH] = MAX_OCTAVE,
+    [GRRL_CONTEXT_TRIED] = MAX_TRIED,
     [GRRL_CONTEXT_NEIGHBOURS] = AHEAD | BEHIND,
-    [GRRL_CONTEXT_NEIGHBOUR_LENGTH] = 1 + MOST_OCTAVE,
-    [GRRL_CONTEXT_REVOLUTE] = MOST_JOINTS,
-    [GRRL_CONTEXT_PRISMATIC] = MOST_JOINTS,
-    [GRRL_CONTEXT_OTHERS_TRIED] = MOST_OTHERS_TRIED,
-    [GRRL_CONTEXT_LONGER] = MOST_LONGER,
+    [GRRL_CONTEXT_NEIGHBOUR_LENGTH] = 1 + MAX_OCTAVE,
+    [GRRL_CONTEXT_REVOLUTE] = MAX_JOINTS,
+    [GRRL_CONTEXT_PRISMATIC] = MAX_JOINTS,
+    [GRRL_CONTEXT_OTHERS_TRIED] = MAX_OTHERS_TRIED,
+    [GRRL_CONTEXT_LONGER] = MAX_LONGER,
 };
 
 static uint8_t at_most(unsigned x, unsigned most)
@@ -36,7 +36,7 @@ static uint8_t at_most(unsigned x, unsigned most)
 static uint8_t octave(float length_m, float large_m)
 {
     uint8_t octave = 0;
-    for (float limit = 0.6f * large_m; octave < MOST_OCTAVE && length_m >= limit; limit *= 2.0f)
+    for (float limit = 0.6f * large_m; octave < MAX_OCTAVE && length_m >= limit; limit *= 2.0f)
         octave++;
     return octave;
 }
@@ -62,7 +62,7 @@ static struct grrl_attempts *find(struct grrl_trial_attempts *attempts, uint16_t
     return NULL;
 }
 
-static bool is_seen(const struct grrl_model *model, uint16_t number)
+static bool is_present(const struct grrl_model *model, uint16_t number)
 {
     for (uint8_t i = 0; i < model->n_bodies; i++)
         if (model->body[i].number == number)
@@ -70,11 +70,11 @@ static bool is_seen(const struct grrl_model *model, uint16_t number)
     return false;
 }
 
-void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
-                        float large_m)
+void grrl_attempts_update(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
+                          float large_m)
 {
     for (unsigned i = 0; i < GRRL_MAX_LINKS; i++)
-        if (!is_seen(model, attempts->link[i].number))
+        if (!is_present(model, attempts->link[i].number))
             memset(&attempts->link[i], 0, sizeof attempts->link[i]);
     for (uint8_t i = 0; i < model->n_bodies; i++) {
         struct grrl_attempts now = {.number = model->body[i].number,
@@ -82,7 +82,7 @@ void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_
         count_joints(model, i, now.joints);
         struct grrl_attempts *link = find(attempts, now.number);
         if (link == NULL)
-            link = find(attempts, 0); /* one is free: at most GRRL_MAX_LINKS bodies are seen */
+            link = find(attempts, 0); /* one is free: at most GRRL_MAX_LINKS bodies exist */
         if (link->number != now.number || link->length != now.length ||
             memcmp(link->joints, now.joints, sizeof now.joints) != 0)
             *link = now;
@@ -97,9 +97,9 @@ void grrl_attempts_add(struct grrl_trial_attempts *attempts, uint16_t body_numbe
         link->tried[direction]++;
 }
 
-/* What the directions of one body have in common. */
-static void describe(const struct grrl_model *model, float large_m, uint8_t body,
-                     struct grrl_context *context)
+/* The parts that all directions of one body share. */
+static void describe_link(const struct grrl_model *model, float large_m, uint8_t body,
+                          struct grrl_context *context)
 {
     const struct grrl_body *self = &model->body[body];
     uint8_t joints[GRRL_JOINT_TYPES];
@@ -119,16 +119,16 @@ static void describe(const struct grrl_model *model, float large_m, uint8_t body
     memset(context, 0, sizeof *context);
     context->part[GRRL_CONTEXT_LENGTH] = octave(self->length_m, large_m);
     context->part[GRRL_CONTEXT_NEIGHBOUR_LENGTH] = longest;
-    context->part[GRRL_CONTEXT_REVOLUTE] = at_most(joints[GRRL_REVOLUTE], MOST_JOINTS);
-    context->part[GRRL_CONTEXT_PRISMATIC] = at_most(joints[GRRL_PRISMATIC], MOST_JOINTS);
-    context->part[GRRL_CONTEXT_LONGER] = at_most(longer, MOST_LONGER);
+    context->part[GRRL_CONTEXT_REVOLUTE] = at_most(joints[GRRL_REVOLUTE], MAX_JOINTS);
+    context->part[GRRL_CONTEXT_PRISMATIC] = at_most(joints[GRRL_PRISMATIC], MAX_JOINTS);
+    context->part[GRRL_CONTEXT_LONGER] = at_most(longer, MAX_LONGER);
 }
 
-/* Where the neighbours lie, seen along a push. */
+/* Whether neighbours lie ahead of and behind a push in this direction. */
 static uint8_t neighbours_along(const struct grrl_model *model, uint8_t body,
                                 struct grrl_vec2 direction)
 {
-    unsigned where = 0;
+    unsigned sides = 0;
     for (uint8_t j = 0; j < model->n_joints; j++) {
         const struct grrl_joint *joint = &model->joint[j];
         if (!joins(joint, body))
@@ -137,15 +137,15 @@ static uint8_t neighbours_along(const struct grrl_model *model, uint8_t body,
         struct grrl_vec2 arm =
             grrl_vec2_sub(model->body[other].centroid_m, model->body[body].centroid_m);
         float along = grrl_vec2_dot(arm, direction);
-        float reach = AHEAD_COSINE * grrl_vec2_length(arm);
-        where |= along > reach ? (unsigned)AHEAD : 0u;
-        where |= along < -reach ? (unsigned)BEHIND : 0u;
+        float threshold = AHEAD_COSINE * grrl_vec2_length(arm);
+        sides |= along > threshold ? (unsigned)AHEAD : 0u;
+        sides |= along < -threshold ? (unsigned)BEHIND : 0u;
     }
-    return (uint8_t)where;
+    return (uint8_t)sides;
 }
 
-/* 0 along the axis, 1 at 45 degrees to it, 2 across. */
-static uint8_t slant(int degrees)
+/* 0 along the axis, 1 at 45 degrees, 2 perpendicular. */
+static uint8_t direction_class(int degrees)
 {
     return (uint8_t)(degrees % 180 / 45);
 }
@@ -165,13 +165,13 @@ enum grrl_status grrl_context_of(const struct grrl_trial_attempts *attempts,
     for (uint8_t d = 0; d < GRRL_DIRECTIONS && link != NULL; d++)
         all_tried += link->tried[d];
     struct grrl_context common;
-    describe(model, large_m, body, &common);
+    describe_link(model, large_m, body, &common);
     for (uint8_t d = 0; d < GRRL_DIRECTIONS; d++) {
         unsigned tried = link != NULL ? link->tried[d] : 0;
         contexts[d] = common;
-        contexts[d].part[GRRL_CONTEXT_DIRECTION] = slant(grrl_direction_deg[d]);
-        contexts[d].part[GRRL_CONTEXT_TRIED] = at_most(tried, MOST_TRIED);
-        contexts[d].part[GRRL_CONTEXT_OTHERS_TRIED] = at_most(all_tried - tried, MOST_OTHERS_TRIED);
+        contexts[d].part[GRRL_CONTEXT_DIRECTION] = direction_class(grrl_direction_deg[d]);
+        contexts[d].part[GRRL_CONTEXT_TRIED] = at_most(tried, MAX_TRIED);
+        contexts[d].part[GRRL_CONTEXT_OTHERS_TRIED] = at_most(all_tried - tried, MAX_OTHERS_TRIED);
         contexts[d].part[GRRL_CONTEXT_NEIGHBOURS] =
             neighbours_along(model, body, grrl_grounding_direction(&frame, d));
     }

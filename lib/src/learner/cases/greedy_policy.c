@@ -1,5 +1,5 @@
-/* greedy_policy.c: the policy `greedy`: as `learn`, but it takes the best estimate, not the highest
- * bound. The worked example of docs/design.md. */
+/* greedy_policy.c: the policy `greedy`, like `learn`, but it takes the best estimate instead of the
+ * highest bound. The worked example in docs/design.md. */
 #include "learner/cases/learn_operations.h"
 
 static void config_default(void *config)
@@ -16,9 +16,9 @@ static enum grrl_status init(void *self, uint32_t capacity, const void *config)
     return grrl_learn_init(self, capacity, config != NULL ? config : &greedy);
 }
 
-const struct grrl_policy_type grrl_policy_greedy = {
+GRRL_POLICY_TYPE grrl_policy_greedy = {
     .name = "greedy",
-    .text = "as learn, but the best estimate, without a bound",
+    .text = "like learn, but the best estimate, without a bound",
     .config_default = config_default,
     .init = init,
     GRRL_LEARN_OPERATIONS,

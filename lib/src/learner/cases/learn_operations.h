@@ -1,5 +1,5 @@
 /* learn_operations.h (private): the operations of the policy `learn`, for policies that differ from
- * it in little. */
+ * it only slightly. */
 #ifndef GRRL_LEARN_OPERATIONS_H
 #define GRRL_LEARN_OPERATIONS_H
 
@@ -19,7 +19,7 @@ void grrl_learn_clear(void *self);
 enum grrl_status grrl_learn_save(const void *self, const struct grrl_io *io);
 enum grrl_status grrl_learn_load(void *self, const struct grrl_io *io, uint32_t *lost);
 
-/* All of them but init and the default of the configuration. */
+/* All operations except init and config_default. */
 #define GRRL_LEARN_OPERATIONS                                                                      \
     .entries = "cases", .config_bytes = sizeof(struct grrl_case_config),                           \
     .config_check = grrl_learn_config_check, .bytes = grrl_learn_bytes,                            \

@@ -47,12 +47,12 @@ void grrl_learn_begin_trial(void *self)
 
 static void describe_actions(struct grrl_learn_policy *policy, const struct grrl_view *view)
 {
-    grrl_attempts_look(&policy->attempts, view->model, view->large_m);
+    grrl_attempts_update(&policy->attempts, view->model, view->large_m);
     policy->contexts.n_links = view->model->n_bodies;
     for (uint8_t i = 0; i < view->model->n_bodies; i++) {
         enum grrl_status status = grrl_context_of(&policy->attempts, view->model, view->large_m, i,
                                                   policy->contexts.action[i]);
-        assert(status == GRRL_OK); /* there is such a body */
+        assert(status == GRRL_OK); /* the body exists */
         (void)status;
     }
 }
@@ -69,8 +69,8 @@ static void set_estimate(struct grrl_choice *choice, const struct grrl_estimate 
     choice->upper = estimate->upper;
 }
 
-/* Whether there is a case of exactly this context. */
-static bool is_met(const struct grrl_estimate *estimate)
+/* Whether a case has exactly this context. */
+static bool is_known(const struct grrl_estimate *estimate)
 {
     return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
 }
@@ -81,7 +81,7 @@ void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_ran
     struct grrl_learn_policy *policy = self;
     describe_actions(policy, view);
     *choice = (struct grrl_choice){.reason = GRRL_CHOICE_EXPLORE};
-    uint32_t equals = 0;
+    uint32_t ties = 0;
     unsigned met = 0;
     float best = 0.0f;
     for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
@@ -89,16 +89,16 @@ void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_ran
             struct grrl_estimate estimate;
             grrl_cases_estimate(&policy->cases, &policy->config,
                                 &policy->contexts.action[link][direction], &estimate);
-            met += is_met(&estimate);
-            if (equals == 0 || estimate.upper > best) {
-                equals = 0;
+            met += is_known(&estimate);
+            if (ties == 0 || estimate.upper > best) {
+                ties = 0;
                 best = estimate.upper;
             }
-            /* the kth of equals takes over with probability 1 / k */
-            if (estimate.upper == best && grrl_random_below(random, ++equals) == 0) {
+            /* the kth of equal actions replaces the choice with probability 1 / k */
+            if (estimate.upper == best && grrl_random_below(random, ++ties) == 0) {
                 choice->link = link;
                 choice->direction = direction;
-                choice->reason = is_met(&estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
+                choice->reason = is_known(&estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
                 set_estimate(choice, &estimate);
             }
         }
@@ -116,7 +116,7 @@ void grrl_learn_explain(void *self, const struct grrl_view *view, struct grrl_ch
             struct grrl_estimate estimate;
             grrl_cases_estimate(&policy->cases, &policy->config,
                                 &policy->contexts.action[link][direction], &estimate);
-            met += is_met(&estimate);
+            met += is_known(&estimate);
             if (link == choice->link && direction == choice->direction)
                 set_estimate(choice, &estimate);
         }
@@ -155,7 +155,7 @@ enum grrl_status grrl_learn_load(void *self, const struct grrl_io *io, uint32_t 
     return grrl_cases_load_torn(&((struct grrl_learn_policy *)self)->cases, io, lost);
 }
 
-const struct grrl_policy_type grrl_policy_learn = {
+GRRL_POLICY_TYPE grrl_policy_learn = {
     .name = "learn",
     .text = "a contextual bandit over cases: the highest upper confidence bound",
     .config_default = grrl_learn_config_default,

@@ -1,4 +1,4 @@
-/* closest.c: the closest stored states, in order, in a fixed number of places. */
+/* closest.c: the closest stored states, in order, in fixed memory. */
 #include "learner/relational_q/closest.h"
 
 void grrl_closest_clear(struct grrl_closest *closest, unsigned most)
@@ -24,8 +24,8 @@ static void exchange(struct grrl_closest *closest, unsigned a, unsigned b)
     closest->distance[b] = distance;
 }
 
-/* Sinks what is at a place of a heap of n. */
-static void sink(struct grrl_closest *closest, unsigned n, unsigned at)
+/* Restores the heap of n below one place. */
+static void sift_down(struct grrl_closest *closest, unsigned n, unsigned at)
 {
     for (unsigned child = 2 * at + 1; child < n; child = 2 * at + 1) {
         child += child + 1 < n && is_farther(closest, child + 1, child);
@@ -39,7 +39,7 @@ static void sink(struct grrl_closest *closest, unsigned n, unsigned at)
 static void make_heap(struct grrl_closest *closest)
 {
     for (unsigned at = closest->n / 2; at-- > 0;)
-        sink(closest, closest->n, at);
+        sift_down(closest, closest->n, at);
 }
 
 void grrl_closest_add(struct grrl_closest *closest, unsigned distance, uint32_t state)
@@ -49,7 +49,7 @@ void grrl_closest_add(struct grrl_closest *closest, unsigned distance, uint32_t 
     closest->state[at] = state;
     closest->distance[at] = (uint8_t)distance;
     if (full)
-        sink(closest, closest->n, 0);
+        sift_down(closest, closest->n, 0);
     else if (closest->n == closest->most)
         make_heap(closest);
 }
@@ -59,6 +59,6 @@ void grrl_closest_sort(struct grrl_closest *closest)
     make_heap(closest);
     for (unsigned end = closest->n; end-- > 1;) {
         exchange(closest, 0, end);
-        sink(closest, end, 0);
+        sift_down(closest, end, 0);
     }
 }

@@ -120,7 +120,7 @@ uint32_t grrl_experience_next_in(const struct grrl_experience_store *store, int 
     return skip_others(store, table, key, store->states[from].chain[table]);
 }
 
-/* Puts a state into its buckets and the index, or takes it out. */
+/* Adds a state to its buckets and the index, or removes it. */
 static void link_state(struct grrl_experience_store *store, uint32_t state)
 {
     for (int table = 0; table < GRRL_EXPERIENCE_TABLES; table++) {
@@ -163,7 +163,7 @@ uint32_t grrl_experience_find_state(const struct grrl_experience_store *store,
     return i;
 }
 
-/* A state takes over another's place; the heads belong to the place. */
+/* Moves a state to another place; the bucket heads stay with the place. */
 static void copy_state(struct grrl_experience_state *place,
                        const struct grrl_experience_state *state)
 {
@@ -208,8 +208,8 @@ uint32_t grrl_experience_add(struct grrl_experience_store *store, uint32_t state
     return index;
 }
 
-/* The place in the state's list that holds `index`. */
-static uint32_t *reference_to(struct grrl_experience_store *store, uint32_t state, uint32_t index)
+/* The list element that holds `index`. */
+static uint32_t *list_element(struct grrl_experience_store *store, uint32_t state, uint32_t index)
 {
     uint32_t *reference = &store->states[state].first;
     while (*reference != index)
@@ -234,10 +234,10 @@ void grrl_experience_remove_state(struct grrl_experience_store *store, uint32_t 
 static void remove_experience(struct grrl_experience_store *store, uint32_t index)
 {
     uint32_t state = store->experiences[index].state;
-    *reference_to(store, state, index) = store->experiences[index].next;
+    *list_element(store, state, index) = store->experiences[index].next;
     uint32_t last = --store->n_experiences;
     if (index != last) {
-        *reference_to(store, store->experiences[last].state, last) = index;
+        *list_element(store, store->experiences[last].state, last) = index;
         store->experiences[index] = store->experiences[last];
     }
     store->evictions++;
@@ -254,7 +254,8 @@ static void evict_experience(struct grrl_experience_store *store)
     remove_experience(store, oldest);
 }
 
-/* The order in a list depends on the store's history, which a file does not have; this does not. */
+/* Removal goes by index, because the order in a list depends on the store's history, which a file
+ * does not keep. */
 static uint32_t highest_of(const struct grrl_experience_store *store, uint32_t state)
 {
     uint32_t highest = store->states[state].first;
@@ -283,7 +284,7 @@ static void evict_state(struct grrl_experience_store *store)
         remove_experience(store, highest_of(store, oldest));
 }
 
-/* The entry of a canonical state's action, made if there is none, and room for it if needed. */
+/* Finds the experience of a canonical state's action, or makes one and evicts if necessary. */
 static uint32_t find_or_make(struct grrl_experience_store *store,
                              const struct grrl_experience_state *described, uint8_t link,
                              uint8_t direction)
@@ -296,7 +297,8 @@ static uint32_t find_or_make(struct grrl_experience_store *store,
     }
     if (store->n_experiences == store->experiences_capacity) {
         evict_experience(store);
-        state = grrl_experience_find_state(store, described); /* may have moved, or gone with it */
+        state =
+            grrl_experience_find_state(store, described); /* may have moved, or been removed too */
     }
     if (state == GRRL_NO_STATE) {
         if (store->n_states == store->states_capacity)
@@ -306,8 +308,8 @@ static uint32_t find_or_make(struct grrl_experience_store *store,
     return grrl_experience_add(store, state, link, direction);
 }
 
-/* Welford's running mean and sum of squared deviations, and the Q-learning estimate. */
-static void meet(struct grrl_q *q, float target, float alpha)
+/* Updates the Q estimate, and Welford's running mean and sum of squared deviations. */
+static void update_q(struct grrl_q *q, float target, float alpha)
 {
     q->value = q->n == 0 ? target : (1.0f - alpha) * q->value + alpha * target;
     if (q->n < UINT32_MAX)
@@ -335,7 +337,8 @@ enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
     uint8_t vertex = 0;
     while (order[vertex] != link)
         vertex++;
-    /* An undecided pair counts as not symmetric: two entries for one action, but no wrong one. */
+    /* An undecided pair counts as not symmetric. That costs a second entry for one action, never a
+     * wrong one. */
     uint8_t orbit[GRRL_MAX_LINKS];
     struct grrl_graph graph;
     grrl_experience_graph(&described, &graph);
@@ -343,7 +346,7 @@ enum grrl_status grrl_experience_update(struct grrl_experience_store *store,
         grrl_match_orbits(&graph, GRRL_ALL_PROPERTIES, GRRL_MATCH_BUDGET, orbit);
     (void)symmetry;
     uint32_t entry = find_or_make(store, &described, orbit[vertex], direction);
-    meet(&store->experiences[entry].q, target, alpha);
+    update_q(&store->experiences[entry].q, target, alpha);
     grrl_experience_touch(store, entry);
     if (index != NULL)
         *index = entry;

@@ -103,7 +103,7 @@ static bool is_label(grrl_label label)
            label >> (8 * (GRRL_MAX_PROPERTIES % 8)) == 0;
 }
 
-/* Whether the numbers read are an undirected graph with at most one joint between two links. */
+/* Whether these numbers form an undirected graph with at most one joint between two links. */
 static bool is_graph(const struct grrl_graph *graph)
 {
     for (uint8_t i = 0; i < graph->n; i++) {

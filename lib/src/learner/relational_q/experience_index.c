@@ -1,11 +1,11 @@
-/* experience_index.c: stored states by their numbers of links and joints. */
+/* experience_index.c: stored states, indexed by their numbers of links and joints. */
 #include <assert.h>
 #include <string.h>
 
 #include "learner/relational_q/closest.h"
 #include "learner/relational_q/experience_private.h"
 
-/* Links and joints of each type, the lowest counts of a signature. */
+/* Links and joints of each type are the lowest counts of a signature. */
 #define SIZE_BYTES UINT64_C(0xffffff)
 
 static uint64_t size_of(unsigned links, unsigned revolute, unsigned prismatic)
@@ -25,7 +25,7 @@ void grrl_experience_index_clear(struct grrl_experience_index *index)
     memset(index->most, 0, sizeof index->most);
 }
 
-/* Each cell behind makes room by giving its first row a place at its end. */
+/* Each later cell makes room by moving its first row to its end. */
 void grrl_experience_index_add(struct grrl_experience_index *index,
                                const struct grrl_experience_state *state, uint32_t number)
 {
@@ -63,7 +63,7 @@ void grrl_experience_index_remove(struct grrl_experience_index *index,
     }
 }
 
-/* States of one size, all larger than the current one or all smaller. */
+/* Searches the states of one size, all larger than the current one or all smaller. */
 static void search_cell(const struct grrl_experience_index *index, uint64_t size, bool larger,
                         const struct grrl_experience_state *current, unsigned distance,
                         struct grrl_closest *closest)
@@ -76,7 +76,7 @@ static void search_cell(const struct grrl_experience_index *index, uint64_t size
         bool fits = larger ? grrl_experience_fits(own, &paths, row->counts, &row->paths)
                            : grrl_experience_fits(row->counts, &row->paths, own, &paths);
         if (fits && (row->counts & SIZE_BYTES) == size &&
-            grrl_closest_wants(closest, distance, row->state))
+            grrl_closest_accepts(closest, distance, row->state))
             grrl_closest_add(closest, distance, row->state);
     }
 }

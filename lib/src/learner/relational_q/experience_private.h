@@ -1,11 +1,11 @@
 /*
- * experience_private.h (private): what the parts of the experience store share.
+ * experience_private.h (private): shared by the files of the experience store.
  *
- * Invariants: each state is in the bucket of each of its keys, bucket b of the table beginning at
- * states[b].head, b below the capacity, also where no state is; states 0 .. n_states - 1 are
- * canonical, all different, each with a list of at least one experience; experiences 0 ..
- * n_experiences - 1 are each in the list of their state, no two of one state with the same link and
- * direction.
+ * Invariants. Each state is in the bucket of each of its keys; the list of bucket b begins at
+ * states[b].head, for every b below the capacity, even where there is no state. States 0 ..
+ * n_states - 1 are canonical and distinct, and each has a list of at least one experience.
+ * Experiences 0 .. n_experiences - 1 are each in the list of their state, and no two of one state
+ * share link and direction.
  */
 #ifndef GRRL_EXPERIENCE_PRIVATE_H
 #define GRRL_EXPERIENCE_PRIVATE_H
@@ -19,8 +19,8 @@
 /* The tables of a store. */
 enum { GRRL_TABLE_EXACT, GRRL_TABLE_SHAPE };
 
-/* Whether a state could be a sub-structure of another, properties aside, as far as counts tell:
- * without branches, which would go either way at random. */
+/* Whether a state could be a sub-structure of another, judged by counts and ignoring properties. It
+ * has no branches, because they would be unpredictable. */
 static inline bool grrl_experience_fits(uint64_t part, const struct grrl_paths *part_paths,
                                         uint64_t whole, const struct grrl_paths *whole_paths)
 {
@@ -29,18 +29,19 @@ static inline bool grrl_experience_fits(uint64_t part, const struct grrl_paths *
            grrl_paths_within(part_paths, whole_paths);
 }
 
-/* What is stored of a state, but for its places in tables and lists. False if its canonical form is
- * undecided. order may be NULL; else canonical link i is link order[i] of the graph. */
+/* Fills in what is stored of a state, except its places in tables and lists. False if its canonical
+ * form is undecided. order, if not NULL, is set so that canonical link i is link order[i] of the
+ * graph. */
 bool grrl_experience_describe(const struct grrl_graph *graph, struct grrl_experience_state *state,
                               uint8_t *order);
 
-/* The first state with this key, the next one after `from`; GRRL_NO_STATE at the end. */
+/* The first state with this key, or the next one after `from`; GRRL_NO_STATE at the end. */
 uint32_t grrl_experience_first_in(const struct grrl_experience_store *store, int table,
                                   uint32_t key);
 uint32_t grrl_experience_next_in(const struct grrl_experience_store *store, int table, uint32_t key,
                                  uint32_t from);
 
-/* The stored state of the same structure and properties, or GRRL_NO_STATE. */
+/* The stored state with the same structure and properties, or GRRL_NO_STATE. */
 uint32_t grrl_experience_find_state(const struct grrl_experience_store *store,
                                     const struct grrl_experience_state *described);
 
@@ -48,7 +49,7 @@ uint32_t grrl_experience_find_state(const struct grrl_experience_store *store,
 uint32_t grrl_experience_find(const struct grrl_experience_store *store, uint32_t state,
                               uint8_t link, uint8_t direction);
 
-/* Appends, with room for it. A state must get an experience before the store is used again. */
+/* Appends; there must be room. A new state needs an experience before the store is used again. */
 uint32_t grrl_experience_add_state(struct grrl_experience_store *store,
                                    const struct grrl_experience_state *described);
 uint32_t grrl_experience_add(struct grrl_experience_store *store, uint32_t state, uint8_t link,
@@ -59,21 +60,21 @@ void grrl_experience_remove_state(struct grrl_experience_store *store, uint32_t 
 
 /* --- the index (experience_index.c) --- */
 
-/* Empties an index, enters a state, takes one out. */
+/* Empties an index, adds a state, removes a state. */
 void grrl_experience_index_clear(struct grrl_experience_index *index);
 void grrl_experience_index_add(struct grrl_experience_index *index,
                                const struct grrl_experience_state *state, uint32_t number);
 void grrl_experience_index_remove(struct grrl_experience_index *index,
                                   const struct grrl_experience_state *state, uint32_t number);
 
-/* Adds to the closest states, and sorts them: those that could be a sub- or super-structure of the
- * current one with so many links and joints less or more. */
+/* Adds to the closest states those that could be a sub- or super-structure of the current one at
+ * this distance in links and joints, and sorts them. */
 struct grrl_closest;
 void grrl_experience_index_find(const struct grrl_experience_index *index,
                                 const struct grrl_experience_state *current, unsigned distance,
                                 struct grrl_closest *closest);
 
-/* No state is farther than this. */
+/* No state is more distant than this. */
 unsigned grrl_experience_index_reach(const struct grrl_experience_index *index,
                                      const struct grrl_experience_state *current);
 

@@ -6,30 +6,31 @@
 #include "learner/relational_q/experience_private.h"
 
 /*
- * How many mappings of one search are looked at before asking for each wanted pair of links on its
- * own: chains have few mappings, a star of n equal links has n factorial.
+ * How many mappings of one search to examine before searching for each wanted pair of links
+ * separately. Chains have few mappings; a star of n equal links has n factorial.
  */
 #define MAPPINGS 32
 
-/* One recall under way, and how it regards the stored state it has come to. */
+/* The state of one recall, and of the stored state under examination. */
 struct job {
     const struct grrl_experience_store *store;
     const struct grrl_recall_config *config;
     const struct grrl_graph *current;
-    const struct grrl_experience_state *described; /* the current state as it would be stored, */
-    grrl_label places;                             /* and its properties in use, as mask bytes */
+    const struct grrl_experience_state *described; /* the current state as it would be stored */
+    grrl_label places;                             /* its properties in use, as mask bytes */
     struct grrl_recall *recall;
-    uint32_t budget;                /* left for the stored state, */
-    uint32_t steps;                 /* and for the sub-structures of the recall */
+    uint32_t budget;                /* steps left for the stored state */
+    uint32_t steps;                 /* steps left for sub-structures, over the whole recall */
     uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
-    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MAX_LINKS + 1]; /* current links with so many joints */
+    /* current links with at least so many joints */
+    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MAX_LINKS + 1];
 
     const struct grrl_experience_state *stored;
-    struct grrl_graph graph; /* of it */
+    struct grrl_graph graph; /* of the stored state */
     enum grrl_match_kind kind;
-    bool forth; /* the stored state is the pattern, the current one the target */
+    bool stored_is_pattern; /* false: the current one is the pattern */
     grrl_label mask;
-    struct grrl_recall_entry offer; /* level, distance and dropped of all its matches */
+    struct grrl_recall_entry closeness; /* level, distance and dropped of all its matches */
 };
 
 /* Current links for each link of the stored state. */
@@ -43,25 +44,25 @@ static void clear_binding(struct binding *binding, uint8_t n)
         binding->to[v] = 0;
 }
 
-/* Whether an experience of the offered closeness is closer than what the entry has. */
+/* Whether an experience at the match's closeness is closer than the entry's. */
 static bool improves(const struct job *job, uint32_t experience,
                      const struct grrl_recall_entry *entry)
 {
     if (entry->experience == GRRL_NO_EXPERIENCE)
         return true;
-    const struct grrl_recall_entry *offer = &job->offer;
-    if (offer->level != entry->level)
-        return offer->level < entry->level;
-    if (offer->distance != entry->distance)
-        return offer->distance < entry->distance;
-    if (offer->dropped != entry->dropped)
-        return offer->dropped < entry->dropped;
+    const struct grrl_recall_entry *closeness = &job->closeness;
+    if (closeness->level != entry->level)
+        return closeness->level < entry->level;
+    if (closeness->distance != entry->distance)
+        return closeness->distance < entry->distance;
+    if (closeness->dropped != entry->dropped)
+        return closeness->dropped < entry->dropped;
     uint32_t n = job->store->experiences[experience].q.n;
     uint32_t entry_n = job->store->experiences[entry->experience].q.n;
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
-/* Fills in at_least. */
+/* Computes at_least. */
 static void count_joints(struct job *job)
 {
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
@@ -73,21 +74,21 @@ static void count_joints(struct job *job)
     }
 }
 
-/* Current links that stored link v could be bound to, as far as degrees tell. */
-static uint32_t could_bind(const struct job *job, uint8_t v)
+/* Current links to which stored link v could be bound, judged by degrees. */
+static uint32_t possible_bindings(const struct job *job, uint8_t v)
 {
     uint32_t links = UINT32_MAX;
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
         unsigned degree = grrl_bit_count(job->graph.joined[type][v]);
-        if (job->forth)
+        if (job->stored_is_pattern)
             links &= job->at_least[type][degree];
-        if (!job->forth || job->kind == GRRL_MATCH_ISOMORPHISM)
+        if (!job->stored_is_pattern || job->kind == GRRL_MATCH_ISOMORPHISM)
             links &= ~job->at_least[type][degree + 1];
     }
     return links;
 }
 
-/* The bindings that would bring a closer experience for some action; false if there are none. */
+/* Finds the bindings that would give some action a closer experience; false if there are none. */
 static bool wanted_bindings(const struct job *job, struct binding *wanted)
 {
     clear_binding(wanted, job->graph.n);
@@ -97,7 +98,7 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
         const struct grrl_experience *experience = &job->store->experiences[i];
         const uint8_t v = experience->link;
         const grrl_label label = grrl_label_masked(job->graph.label[v], job->mask);
-        uint32_t links = job->open[experience->direction] & could_bind(job, v);
+        uint32_t links = job->open[experience->direction] & possible_bindings(job, v);
         for (; links != 0; links &= links - 1u) {
             uint8_t c = grrl_first_bit(links);
             if (grrl_label_masked(job->current->label[c], job->mask) == label &&
@@ -112,10 +113,10 @@ static bool wanted_bindings(const struct job *job, struct binding *wanted)
 
 static void add_mapping(const struct job *job, const uint8_t *map, struct binding *found)
 {
-    uint8_t n = job->forth ? job->graph.n : job->current->n;
+    uint8_t n = job->stored_is_pattern ? job->graph.n : job->current->n;
     for (uint8_t i = 0; i < n; i++) {
-        uint8_t v = job->forth ? i : map[i];
-        uint8_t c = job->forth ? map[i] : i;
+        uint8_t v = job->stored_is_pattern ? i : map[i];
+        uint8_t c = job->stored_is_pattern ? map[i] : i;
         found->to[v] |= grrl_bit(c);
     }
 }
@@ -131,11 +132,11 @@ static bool covers(const struct binding *found, const struct binding *wanted, ui
 static void begin(const struct job *job, struct grrl_match *match)
 {
     const struct grrl_graph *stored = &job->graph;
-    grrl_match_begin(match, job->kind, job->forth ? stored : job->current,
-                     job->forth ? job->current : stored, job->mask, job->budget);
+    grrl_match_begin(match, job->kind, job->stored_is_pattern ? stored : job->current,
+                     job->stored_is_pattern ? job->current : stored, job->mask, job->budget);
 }
 
-/* Asks for one mapping through each wanted pair that is not yet known to have one. */
+/* Searches for a mapping through each wanted pair that none has been found for. */
 static void find_pairs(struct job *job, const struct binding *wanted, struct binding *found)
 {
     for (uint8_t v = 0; v < job->graph.n; v++) {
@@ -147,7 +148,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
             begin(job, &match);
-            grrl_match_fix(&match, job->forth ? v : c, job->forth ? c : v);
+            grrl_match_fix(&match, job->stored_is_pattern ? v : c, job->stored_is_pattern ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK)
                 add_mapping(job, map, found);
             job->budget = match.budget;
@@ -173,8 +174,8 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
     find_pairs(job, wanted, found);
 }
 
-/* Enters what the stored state knows, under the kind, mask and closeness of the job. */
-static void consult(struct job *job)
+/* Enters the experiences of the stored state, under the job's kind, mask and closeness. */
+static void match_stored(struct job *job)
 {
     struct binding wanted;
     if (job->budget == 0 || !wanted_bindings(job, &wanted))
@@ -189,7 +190,7 @@ static void consult(struct job *job)
             struct grrl_recall_entry *entry =
                 &job->recall->entry[grrl_first_bit(links)][experience->direction];
             if (improves(job, i, entry)) {
-                *entry = job->offer;
+                *entry = job->closeness;
                 entry->experience = i;
                 entry->stored_link = experience->link;
             }
@@ -220,57 +221,57 @@ static grrl_label drop_last(grrl_label places)
     return places & ~last;
 }
 
-/* Isomorphic without properties: ever fewer of them. */
-static void consult_relaxed(struct job *job)
+/* Compares isomorphic states with fewer and fewer properties. */
+static void match_relaxed(struct job *job)
 {
     grrl_label places = job->places | places_in_use(&job->graph);
-    job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_RELAXED};
+    job->closeness = (struct grrl_recall_entry){.level = GRRL_RECALL_RELAXED};
     while (places != 0) {
         places = drop_last(places);
         job->mask = places;
-        job->offer.dropped++;
-        consult(job);
+        job->closeness.dropped++;
+        match_stored(job);
     }
 }
 
-/* With all properties, then with none. */
-static void consult_substructure(struct job *job, uint8_t distance)
+/* Compares with all properties, then with none. */
+static void match_substructure(struct job *job, uint8_t distance)
 {
     grrl_label places = job->places | places_in_use(&job->graph);
-    job->offer =
+    job->closeness =
         (struct grrl_recall_entry){.level = GRRL_RECALL_SUBSTRUCTURE, .distance = distance};
     job->mask = GRRL_ALL_PROPERTIES;
     const struct grrl_signature *stored = &job->stored->signature;
     const struct grrl_signature *current = &job->described->signature;
-    if (job->forth ? grrl_signature_within(stored, current, false)
-                   : grrl_signature_within(current, stored, false))
-        consult(job);
+    if (job->stored_is_pattern ? grrl_signature_within(stored, current, false)
+                               : grrl_signature_within(current, stored, false))
+        match_stored(job);
     for (; places != 0; places = drop_last(places))
-        job->offer.dropped++;
-    if (job->offer.dropped > 0 && !job->config->strict) {
+        job->closeness.dropped++;
+    if (job->closeness.dropped > 0 && !job->config->strict) {
         job->mask = GRRL_NO_PROPERTIES;
-        consult(job);
+        match_stored(job);
     }
 }
 
-static void take_state(struct job *job, uint32_t state)
+static void load_state(struct job *job, uint32_t state)
 {
     job->stored = &job->store->states[state];
     job->budget = job->config->budget;
     grrl_experience_graph(job->stored, &job->graph);
 }
 
-static void consult_isomorphic(struct job *job)
+static void match_isomorphic(struct job *job)
 {
     const struct grrl_experience_state *current = job->described;
     job->kind = GRRL_MATCH_ISOMORPHISM;
-    job->forth = true;
+    job->stored_is_pattern = true;
     uint32_t exact = grrl_experience_find_state(job->store, current);
     if (exact != GRRL_NO_STATE) {
-        take_state(job, exact);
+        load_state(job, exact);
         job->mask = GRRL_ALL_PROPERTIES;
-        job->offer = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
-        consult(job);
+        job->closeness = (struct grrl_recall_entry){.level = GRRL_RECALL_EXACT};
+        match_stored(job);
     }
     if (job->config->deepest < GRRL_RECALL_RELAXED || job->config->strict)
         return;
@@ -281,21 +282,21 @@ static void consult_isomorphic(struct job *job)
         const struct grrl_experience_state *stored = &job->store->states[i];
         if (stored->n == current->n &&
             memcmp(stored->joints, current->joints, sizeof current->joints) == 0) {
-            take_state(job, i);
-            consult_relaxed(job);
+            load_state(job, i);
+            match_relaxed(job);
         }
     }
 }
 
 /* --- sub-structures --------------------------------------------------------------------------- */
 
-/* No two states differ by more links and joints. */
-enum { FARTHEST = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
+/* No two states differ by more links and joints than this. */
+enum { MAX_DISTANCE = GRRL_MAX_LINKS + GRRL_MAX_JOINTS };
 
-_Static_assert(FARTHEST <= UINT8_MAX && GRRL_MAX_JOINTS <= INT8_MAX,
+_Static_assert(MAX_DISTANCE <= UINT8_MAX && GRRL_MAX_JOINTS <= INT8_MAX,
                "distances are bytes, and signatures count all links and joints");
 
-/* Links and joints, as a signature has them. */
+/* The number of links and joints, from a signature's counts. */
 static unsigned size_of(uint64_t counts)
 {
     return (unsigned)((counts & 0xffu) + (counts >> 8 & 0xffu) + (counts >> 16 & 0xffu));
@@ -304,8 +305,8 @@ static unsigned size_of(uint64_t counts)
 _Static_assert(offsetof(struct grrl_experience_state, signature.word[1]) <= 32,
                "half a cache line is all that a scan reads of a state");
 
-/* Without an index: of all states that fit, in one pass. With as many links and joints as the
- * current one a state is isomorphic or nothing: not wanted here. */
+/* Finds the closest states without an index, in one pass. A state with as many links and joints as
+ * the current one is isomorphic or no match, so it is skipped here. */
 static void scan_states(const struct grrl_experience_store *store,
                         const struct grrl_experience_state *current, struct grrl_closest *closest)
 {
@@ -320,7 +321,7 @@ static void scan_states(const struct grrl_experience_store *store,
         const unsigned size = size_of(counts);
         const bool larger = size > own;
         const unsigned distance = larger ? size - own : own - size;
-        if (distance == 0 || !grrl_closest_wants(closest, distance, i))
+        if (distance == 0 || !grrl_closest_accepts(closest, distance, i))
             continue;
         if (larger ? grrl_experience_fits(own_counts, &current->paths, counts, &stored->paths)
                    : grrl_experience_fits(counts, &stored->paths, own_counts, &current->paths))
@@ -329,7 +330,8 @@ static void scan_states(const struct grrl_experience_store *store,
     grrl_closest_sort(closest);
 }
 
-/* What states of the next distance could still improve: what has no entry. False: nothing. */
+/* Actions without an entry are the only ones that more distant states could improve.
+ * False: none. */
 static bool find_open(struct job *job)
 {
     bool any = false;
@@ -353,28 +355,28 @@ static bool knows_open_direction(const struct job *job, const struct grrl_experi
     return false;
 }
 
-static void consult_part(struct job *job, uint32_t state, uint8_t distance)
+static void match_part(struct job *job, uint32_t state, uint8_t distance)
 {
     if (!knows_open_direction(job, &job->store->states[state]))
         return;
-    take_state(job, state);
+    load_state(job, state);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
-    job->forth =
+    job->stored_is_pattern =
         size_of(job->stored->signature.word[0]) < size_of(job->described->signature.word[0]);
-    consult_substructure(job, distance);
+    match_substructure(job, distance);
     job->steps -= granted - job->budget;
 }
 
-/* Asks for the first lines of a state, then for what these lead to. */
-static void ask_for_state(const struct grrl_experience_state *state)
+/* Prefetches the first cache lines of a state. */
+static void prefetch_state(const struct grrl_experience_state *state)
 {
     grrl_prefetch(state);
     grrl_prefetch(&state->first);
 }
 
-static void ask_for_links(const struct grrl_experience_store *store,
-                          const struct grrl_experience_state *state)
+static void prefetch_links(const struct grrl_experience_store *store,
+                           const struct grrl_experience_state *state)
 {
     enum { LINE_BYTES = 64 };
     grrl_prefetch(&store->experiences[state->first]);
@@ -383,30 +385,30 @@ static void ask_for_links(const struct grrl_experience_store *store,
         grrl_prefetch(&state->label[i]);
 }
 
-/* Consults some of the list. Of thousands of states few are in a cache: the memory of each is asked
- * for some states ahead. */
-static void consult_listed(struct job *job, const struct grrl_closest *closest, unsigned from,
-                           unsigned to)
+/* Examines part of the list. Of thousands of states few are in a cache, so the memory of each is
+ * prefetched a few states ahead. */
+static void match_listed(struct job *job, const struct grrl_closest *closest, unsigned from,
+                         unsigned to)
 {
     enum { FAR = 8, NEAR = 4 };
     const struct grrl_experience_state *states = job->store->states;
     for (unsigned k = from; k < to + FAR; k++) {
         if (k < to)
-            ask_for_state(&states[closest->state[k]]);
+            prefetch_state(&states[closest->state[k]]);
         if (k >= from + FAR - NEAR && k < to + FAR - NEAR)
-            ask_for_links(job->store, &states[closest->state[k - (FAR - NEAR)]]);
+            prefetch_links(job->store, &states[closest->state[k - (FAR - NEAR)]]);
         if (k >= from + FAR)
-            consult_part(job, closest->state[k - FAR], closest->distance[k - FAR]);
+            match_part(job, closest->state[k - FAR], closest->distance[k - FAR]);
     }
 }
 
-/* The closest states first, so that the others need a search only for what is still open. */
-static void consult_parts(struct job *job)
+/* Takes the closest states first, so that later states are searched only for actions still open. */
+static void match_parts(struct job *job)
 {
     const struct grrl_experience_index *index = job->store->index;
     struct grrl_closest closest;
-    unsigned to = 0; /* so many of the list are done */
-    unsigned reach = FARTHEST;
+    unsigned to = 0; /* entries of the list that are done */
+    unsigned reach = MAX_DISTANCE;
     unsigned left =
         job->config->states < GRRL_RECALL_STATES ? job->config->states : GRRL_RECALL_STATES;
     job->kind = GRRL_MATCH_MONOMORPHISM;
@@ -429,7 +431,7 @@ static void consult_parts(struct job *job)
         const unsigned from = to;
         while (to < closest.n && closest.distance[to] == d)
             to++;
-        consult_listed(job, &closest, from, to);
+        match_listed(job, &closest, from, to);
         left -= to - from;
     }
 }
@@ -457,7 +459,7 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
     for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
         job.open[direction] = grrl_bits_below(state->n);
     count_joints(&job);
-    consult_isomorphic(&job);
+    match_isomorphic(&job);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE)
-        consult_parts(&job);
+        match_parts(&job);
 }

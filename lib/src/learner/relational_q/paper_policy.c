@@ -29,9 +29,9 @@ enum grrl_status grrl_paper_config_check(const struct grrl_paper_config *config,
     const struct grrl_range_check checks[] = {
         {"alpha", config->alpha > 0.0f && config->alpha <= 1.0f},
         {"gamma", config->gamma >= 0.0f && config->gamma < 1.0f},
-        {"beta", grrl_is_within(config->beta, 0.0f, GRRL_PAPER_MOST)},
-        {"z", grrl_is_within(config->z, 0.0f, GRRL_PAPER_MOST)},
-        {"prior_sd", grrl_is_within(config->prior_sd, 0.0f, GRRL_PAPER_MOST)},
+        {"beta", grrl_is_within(config->beta, 0.0f, GRRL_PAPER_MAX)},
+        {"z", grrl_is_within(config->z, 0.0f, GRRL_PAPER_MAX)},
+        {"prior_sd", grrl_is_within(config->prior_sd, 0.0f, GRRL_PAPER_MAX)},
         {"recall.deepest", recall->deepest == GRRL_RECALL_EXACT ||
                                recall->deepest == GRRL_RECALL_RELAXED ||
                                recall->deepest == GRRL_RECALL_SUBSTRUCTURE},
@@ -97,7 +97,7 @@ void grrl_paper_explain(const struct grrl_paper_config *config,
     }
 }
 
-/* The nth action without experience. */
+/* Picks the nth action without an experience. */
 static void pick_unknown(const struct grrl_recall *recall, uint32_t nth, struct grrl_choice *choice)
 {
     for (uint8_t link = 0; link < recall->n_links; link++) {
@@ -111,7 +111,8 @@ static void pick_unknown(const struct grrl_recall *recall, uint32_t nth, struct 
     }
 }
 
-/* The highest upper bound; the kth of equals takes over with probability 1 / k. */
+/* Picks the highest upper bound; the kth of equal actions replaces the choice with probability 1 /
+ * k. */
 static void pick_best(const struct grrl_paper_config *config,
                       const struct grrl_experience_store *store, const struct grrl_recall *recall,
                       struct grrl_random *random, struct grrl_choice *choice)
@@ -252,11 +253,12 @@ static void learn(void *self, const struct grrl_outcome *outcome, struct grrl_up
         update->target +=
             policy->config.gamma * grrl_paper_best_value(&policy->store, &policy->recall);
     }
-    update->target = limit(update->target); /* a discount next to 1 adds up without end */
+    update->target =
+        limit(update->target); /* with a discount close to 1 the sum may grow without limit */
     uint32_t index;
     if (grrl_experience_update(&policy->store, &policy->acted_on, choice->link, choice->direction,
                                update->target, policy->config.alpha, &index) == GRRL_OK)
-        update->index = index; /* else the state is too symmetric for a canonical form */
+        update->index = index; /* on failure the state is too symmetric for a canonical form */
 }
 
 static struct grrl_usage usage(const void *self)
@@ -290,7 +292,7 @@ static const struct grrl_parameter parameters[] = {
      offsetof(struct grrl_paper_config, z)},
 };
 
-const struct grrl_policy_type grrl_policy_paper = {
+GRRL_POLICY_TYPE grrl_policy_paper = {
     .name = "paper",
     .text = "the paper's learner: closest experience, phi, Interval Estimation",
     .entries = "experiences",

@@ -1,9 +1,9 @@
 /*
- * context.h: an action as the link that is pushed sees it, whatever object the link is part of.
+ * context.h: describes an action from the pushed link's point of view, independent of the object.
  *
- * What a push reveals depends on the link, its neighbours and what it refused before, hardly on the
- * rest of the object. A context says that much in a few small numbers, the same for a mirrored or
- * turned object, so that experience with one action speaks for every other that looks like it.
+ * What a push reveals depends on the link, its neighbours and earlier failed pushes, and hardly on
+ * the rest of the object. A context encodes these in a few small numbers. They are the same for a
+ * mirrored or rotated object, so a reward for one action carries over to every similar action.
  */
 #ifndef GRRL_CONTEXT_H
 #define GRRL_CONTEXT_H
@@ -14,18 +14,18 @@
 
 GRRL_API_BEGIN
 
-/* The parts of a context. Lengths are in octaves of `large_m`: 0 below 0.6 of it, 1 below 1.2, 2
- * below 2.4, 3 below 4.8, 4 beyond. */
+/* The parts of a context. Lengths are in octaves relative to `large_m`: 0 below 0.6 of it, 1 below
+ * 1.2, 2 below 2.4, 3 below 4.8, else 4. */
 enum grrl_context_part {
     GRRL_CONTEXT_DIRECTION,        /* 0 axial, 1 diagonal, 2 perpendicular */
-    GRRL_CONTEXT_LENGTH,           /* of the link, in octaves */
-    GRRL_CONTEXT_TRIED,            /* this push of the link so far, up to 3 */
+    GRRL_CONTEXT_LENGTH,           /* of the link, octave */
+    GRRL_CONTEXT_TRIED,            /* earlier pushes of the link in this direction, up to 3 */
     GRRL_CONTEXT_NEIGHBOURS,       /* bit 0: a neighbour lies ahead, bit 1: behind */
-    GRRL_CONTEXT_NEIGHBOUR_LENGTH, /* 0 without neighbours, else 1 + octaves of the longest */
+    GRRL_CONTEXT_NEIGHBOUR_LENGTH, /* 0 without neighbours, else 1 + octave of the longest */
     GRRL_CONTEXT_REVOLUTE,         /* revolute joints of the link, up to 2 */
     GRRL_CONTEXT_PRISMATIC,        /* prismatic joints of the link, up to 2 */
-    GRRL_CONTEXT_OTHERS_TRIED,     /* its other pushes so far, up to 2 */
-    GRRL_CONTEXT_LONGER,           /* links longer by 15% or more, up to 2 */
+    GRRL_CONTEXT_OTHERS_TRIED,     /* earlier pushes of the link in other directions, up to 2 */
+    GRRL_CONTEXT_LONGER,           /* links at least 15% longer, up to 2 */
     GRRL_CONTEXT_PARTS
 };
 
@@ -33,36 +33,36 @@ struct grrl_context {
     uint8_t part[GRRL_CONTEXT_PARTS]; /* by enum grrl_context_part */
 };
 
-/* The most that each part of a context can be. */
-extern const uint8_t grrl_context_most[GRRL_CONTEXT_PARTS];
+/* The largest value of each part of a context. */
+extern const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS];
 
-/* The pushes of one link since its own length or joints changed. */
+/* Pushes of one link since its length or joints last changed. */
 struct grrl_attempts {
     /* private */
-    uint16_t number; /* of the body, 0: of nobody */
+    uint16_t number; /* of the body; 0: none */
     uint8_t length;
     uint8_t joints[GRRL_JOINT_TYPES];
     uint8_t tried[GRRL_DIRECTIONS];
 };
 
-/* The pushes of one trial, by link; all zero at its start. */
+/* Pushes of one trial, by link. All zero at the start of a trial. */
 struct grrl_trial_attempts {
     /* private */
     struct grrl_attempts link[GRRL_MAX_LINKS];
 };
 
 /*
- * Brings the attempts up to date with the model: a link whose length (in octaves) or number of
- * joints changed has refused nothing yet, and what belongs to links that are gone is forgotten.
+ * Updates the attempts to match the model. A link whose length (octave) or number of joints changed
+ * starts again from zero; entries of links that no longer exist are removed.
  */
-void grrl_attempts_look(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
-                        float large_m);
+void grrl_attempts_update(struct grrl_trial_attempts *attempts, const struct grrl_model *model,
+                          float large_m);
 
-/* Counts a push of the body with this number in the model last looked at. */
+/* Counts a push of the body with this number, in the model of the last update. */
 void grrl_attempts_add(struct grrl_trial_attempts *attempts, uint16_t body_number,
                        uint8_t direction);
 
-/* The contexts of all pushes of one body of the model last looked at, by direction.
+/* Computes the contexts of all pushes of one body, by direction, in the model of the last update.
  * GRRL_ERR_ARGUMENT: no such body. Cost: linear in joints and bodies. */
 GRRL_MUST_USE enum grrl_status grrl_context_of(const struct grrl_trial_attempts *attempts,
                                                const struct grrl_model *model, float large_m,

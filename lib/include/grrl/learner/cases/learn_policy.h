@@ -2,8 +2,9 @@
  * learn_policy.h: the policy `learn`, a contextual bandit.
  *
  * It describes each action by its context (context.h), estimates the reward by kernel regression
- * over the cases met (case_base.h), and takes the action with the highest upper confidence bound.
- * Rewards are immediate: what a push reveals tells good pushes from bad ones without looking ahead.
+ * over the cases (case_base.h), and takes the action with the highest upper confidence bound.
+ * Rewards are immediate: what a push reveals distinguishes good pushes from bad ones without
+ * look-ahead.
  */
 #ifndef GRRL_LEARN_POLICY_H
 #define GRRL_LEARN_POLICY_H
@@ -21,16 +22,16 @@ struct grrl_contexts {
     struct grrl_context action[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
 };
 
-/* Its memory; the cases follow. Its configuration is a struct grrl_case_config. */
+/* The policy's memory; the cases follow it. Its configuration is a struct grrl_case_config. */
 struct grrl_learn_policy {
     struct grrl_case_config config;
     struct grrl_case_base cases;
     /* private */
     struct grrl_trial_attempts attempts;
-    struct grrl_contexts contexts; /* of the state of the last choice */
+    struct grrl_contexts contexts; /* in the state of the last choice */
 };
 
-/* What grrl_policy_make takes for it: a constant expression. */
+/* Bytes to pass to grrl_policy_make for this policy; a constant expression. */
 #define GRRL_LEARN_POLICY_BYTES(capacity)                                                          \
     (sizeof(struct grrl_learn_policy) + (capacity) * sizeof(struct grrl_case))
 
