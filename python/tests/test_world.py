@@ -38,7 +38,7 @@ def test_refused_push_says_why():
     assert (result.reason, frames) == ("refused", [])
     assert result.why
     assert world.begin_push(PUSH) == ""
-    assert "going on" in world.begin_push(PUSH)
+    assert "wait for its result" in world.begin_push(PUSH)
 
 
 def test_truth_is_the_supervisors():
