@@ -38,11 +38,12 @@ Result<ObjectSpec> object_from_word(const std::string &text)
         return object_from_file(path);
     Result<ObjectSpec> object = object_from_term(text);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
-        object = Result<ObjectSpec>::bad("a single link of this name is written L(" + text + ")");
+        object = Result<ObjectSpec>::bad("write a single link of this name as L(" + text + ")");
     if (!object)
-        object.error = "'" + text +
-                       "' is no chain such as RPR, no file such as scissors.grrl, and as a term: " +
-                       object.error;
+        object.error =
+            "'" + text +
+            "' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: " +
+            object.error;
     std::string names = object_names();
     if (!object && !names.empty())
         object.error += "; by name there are " + names;

@@ -1,0 +1,476 @@
+/* perceive.cpp: perception on a whole recording, as grrl-perceive does it, and frame by frame. */
+#include "native.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include <nanobind/stl/tuple.h>
+
+extern "C" {
+#include "doubts.h"
+#include "motion.h"
+#include "report.h"
+#include "tracks.h"
+#include "warnings.h"
+}
+
+namespace grrl_python
+{
+
+namespace
+{
+
+constexpr float large_m =
+    0.15f; /* links from this length on are called large; as for the learner */
+constexpr double measured = -1.0; /* a noise that is told from the points */
+
+/* A recording with its storage. */
+struct Tracks {
+    grrl_tracks all{};
+
+    Tracks() = default;
+    ~Tracks() { grrl_tracks_free(&all); }
+    Tracks(const Tracks &) = delete;
+    Tracks &operator=(const Tracks &) = delete;
+
+    grrl_frame frame(size_t i) const
+    {
+        const grrl_tracks_frame &in = all.frame[i];
+        return {in.n, all.id + in.first, all.x + in.first, all.y + in.first};
+    }
+};
+
+struct Unit {
+    const char *name;
+    float metres;
+};
+
+Unit unit_of(const std::string &name)
+{
+    for (Unit unit : {Unit{"px", 0.001f}, Unit{"mm", 0.001f}, Unit{"m", 1.0f}})
+        if (name == unit.name)
+            return unit;
+    throw nb::value_error("unit must be 'px', 'mm' or 'm'");
+}
+
+template <typename T> T *copy_of(const T *from, size_t n)
+{
+    T *to = static_cast<T *>(std::malloc((n + 1) * sizeof(T))); /* never of 0 bytes */
+    if (to == nullptr)
+        throw std::bad_alloc();
+    std::memcpy(to, from, n * sizeof(T));
+    return to;
+}
+
+using Counts = nb::ndarray<const int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Numbers = nb::ndarray<const int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void check_sizes(const Ids &id, const Floats &x, const Floats &y, const Counts &count,
+                 const Numbers &number, const Flags &pushing, const Flags &settled)
+{
+    size_t points = 0;
+    for (size_t f = 0; f < count.shape(0); f++) {
+        if (count.data()[f] < 0)
+            throw nb::value_error("a frame cannot hold fewer than 0 points");
+        points += static_cast<size_t>(count.data()[f]);
+    }
+    bool good = id.shape(0) == points && x.shape(0) == points && y.shape(0) == points &&
+                number.shape(0) == count.shape(0) && pushing.shape(0) == count.shape(0) &&
+                settled.shape(0) == count.shape(0);
+    if (!good)
+        throw nb::value_error("the arrays of a recording do not fit one another");
+}
+
+void fill(Tracks &tracks, const Ids &id, const Floats &x, const Floats &y, const Counts &count,
+          const Numbers &number, const Flags &pushing, const Flags &settled)
+{
+    check_sizes(id, x, y, count, number, pushing, settled);
+    grrl_tracks &all = tracks.all;
+    all.n_points = id.shape(0);
+    all.id = copy_of(id.data(), all.n_points);
+    all.x = copy_of(x.data(), all.n_points);
+    all.y = copy_of(y.data(), all.n_points);
+    std::vector<grrl_tracks_frame> frames;
+    size_t first = 0;
+    for (size_t f = 0; f < count.shape(0); f++) {
+        uint32_t n = static_cast<uint32_t>(count.data()[f]);
+        frames.push_back({first, number.data()[f], n, pushing.data()[f], settled.data()[f]});
+        first += n;
+    }
+    all.n_frames = frames.size();
+    all.frame = copy_of(frames.data(), frames.size());
+}
+
+/* One recording on its way to an answer; the steps of grrl-perceive. */
+struct Run {
+    Tracks tracks;
+    Unit unit{"m", 1.0f};
+    std::string profile;
+    bool said = true; /* the unit was named by the user */
+    double noise = 0.0;
+    std::unique_ptr<grrl_perception> perception = std::make_unique<grrl_perception>();
+    grrl_warnings warnings{};
+    std::string term;
+
+    void run(bool drop_lost);
+    grrl_report report() const;
+
+private:
+    float measure_noise() const;
+    grrl_status observe();
+    void begin(const grrl_perception_config &config);
+
+    unsigned n_tracks_ = 0; /* ids in the input; counting takes a sort */
+};
+
+float Run::measure_noise() const
+{
+    auto estimate = std::make_unique<grrl_noise>();
+    grrl_noise_init(estimate.get());
+    for (size_t i = 0; i < tracks.all.n_frames; i++) {
+        grrl_frame frame = tracks.frame(i);
+        grrl_noise_observe(estimate.get(), &frame);
+    }
+    float noise_m = 0.0f;
+    grrl_status status = grrl_noise_estimate(estimate.get(), &noise_m);
+    if (status == GRRL_ERR_NONE)
+        throw std::invalid_argument("noise='auto': too few points that are seen in three frames in "
+                                    "a row; give the noise as a number");
+    if (status != GRRL_OK)
+        throw std::invalid_argument("noise='auto': the points do not scatter, or are rounded; give "
+                                    "the noise as a number");
+    return noise_m;
+}
+
+void Run::begin(const grrl_perception_config &config)
+{
+    if (grrl_perception_init(perception.get(), &config) != GRRL_OK)
+        throw std::invalid_argument("noise is out of range: a number above 0, in the unit of the "
+                                    "tracks");
+}
+
+grrl_status Run::observe()
+{
+    for (size_t i = 0; i < tracks.all.n_frames; i++) {
+        grrl_frame frame = tracks.frame(i);
+        bool pushing = tracks.all.frame[i].pushing && i + 1 < tracks.all.n_frames;
+        grrl_perception_observe(perception.get(), &frame, pushing);
+        if (perception->counts.overflow > 0)
+            return GRRL_ERR_FULL;
+        if (tracks.all.frame[i].settled) {
+            grrl_status status = grrl_perception_update(perception.get());
+            if (status != GRRL_OK && status != GRRL_ERR_NONE)
+                return status;
+        }
+    }
+    return grrl_perception_update(perception.get());
+}
+
+grrl_report Run::report() const
+{
+    grrl_report report{};
+    report.model = grrl_perception_model(perception.get());
+    report.perception = perception.get();
+    report.counts = &perception->counts;
+    report.recording = &tracks.all;
+    report.warnings = &warnings;
+    report.term = term.c_str();
+    report.unit = unit.name;
+    report.profile = profile.c_str();
+    report.per_metre = 1.0 / static_cast<double>(unit.metres);
+    report.noise = static_cast<double>(perception->config.noise_m) * report.per_metre;
+    report.frames = static_cast<unsigned>(tracks.all.n_frames);
+    report.tracks = n_tracks_;
+    report.keyframes = perception->counts.keyframes_high;
+    report.y_down = std::strcmp(unit.name, "px") == 0;
+    return report;
+}
+
+void Run::run(bool drop_lost)
+{
+    grrl_tracks &all = tracks.all;
+    if (drop_lost && !grrl_tracks_drop_lost(&all))
+        throw std::bad_alloc();
+    for (size_t i = 0; i < all.n_points; i++) {
+        all.x[i] *= unit.metres;
+        all.y[i] *= unit.metres;
+    }
+    grrl_perception_config config =
+        profile_config(profile, noise, static_cast<double>(unit.metres));
+    if (noise == measured)
+        config.noise_m = measure_noise();
+    begin(config);
+    grrl_status status = observe();
+    if (perception->counts.overflow > 0) {
+        if (!grrl_tracks_choose(&all, GRRL_MAX_FEATURES))
+            throw std::bad_alloc();
+        begin(config);
+        status = observe();
+    }
+    if (status == GRRL_ERR_NONE && perception->counts.refused > 0)
+        throw std::invalid_argument("every point lies more than 100 m from the origin: is unit= "
+                                    "right?");
+    if (status == GRRL_ERR_NONE)
+        throw std::invalid_argument("no point is visible in any frame");
+    if (status != GRRL_OK)
+        throw std::runtime_error(grrl_status_text(status));
+    n_tracks_ = static_cast<unsigned>(grrl_tracks_count_ids(&all) + all.left_out.n);
+    term = term_of(*grrl_perception_model(perception.get()), large_m);
+    grrl_report with_doubts = report();
+    grrl_doubt_input(&all, &warnings);
+    grrl_doubt_unit(&all, &with_doubts, said, &warnings);
+    grrl_doubt_losses(&with_doubts, &warnings);
+}
+
+/* --- how the joints move ---------------------------------------------------------------------- */
+
+struct MemoryFile {
+    char *text = nullptr;
+    size_t size = 0;
+    std::FILE *file = open_memstream(&text, &size);
+
+    MemoryFile() = default;
+    ~MemoryFile()
+    {
+        close();
+        std::free(text);
+    }
+    MemoryFile(const MemoryFile &) = delete;
+    MemoryFile &operator=(const MemoryFile &) = delete;
+
+    void close()
+    {
+        if (file != nullptr)
+            (void)std::fclose(file);
+        file = nullptr;
+    }
+};
+
+struct MotionRow {
+    long long frame;
+    unsigned a;
+    unsigned b;
+    double value; /* radians or units */
+};
+
+/* frame,fA,fB,type,value,unit. Not by sscanf, which measures all the text behind for each row. */
+MotionRow row_of(const char *text)
+{
+    MotionRow row{};
+    char *at = nullptr;
+    row.frame = std::strtoll(text, &at, 10);
+    row.a = static_cast<unsigned>(std::strtoul(at + 2, &at, 10)); /* behind ",f" */
+    row.b = static_cast<unsigned>(std::strtoul(at + 2, &at, 10));
+    bool slides = at[1] == 'p';
+    row.value = std::strtod(std::strchr(at + 1, ',') + 1, nullptr);
+    if (!slides)
+        row.value *= static_cast<double>(GRRL_PI) / 180.0;
+    return row;
+}
+
+/* Of joint j in frame f, at j * frames + f: radians or units, NaN where it is not known. */
+std::vector<double> motion_of(const Run &run)
+{
+    grrl_report report = run.report();
+    const grrl_model &model = *report.model;
+    size_t frames = run.tracks.all.n_frames;
+    std::vector<double> motion(model.n_joints * frames, std::numeric_limits<double>::quiet_NaN());
+    std::map<std::pair<unsigned, unsigned>, size_t> joint_of;
+    for (size_t j = 0; j < model.n_joints; j++)
+        joint_of[{model.body[model.joint[j].a].number, model.body[model.joint[j].b].number}] = j;
+    std::map<long long, size_t> frame_of;
+    for (size_t f = 0; f < frames; f++)
+        frame_of[run.tracks.all.frame[f].number] = f;
+    MemoryFile memory;
+    if (memory.file == nullptr || !grrl_motion_write(memory.file, &report))
+        throw std::bad_alloc();
+    memory.close();
+    const char *line = std::strchr(memory.text, '\n'); /* the header ends */
+    while (line != nullptr && line[1] != '\0') {
+        MotionRow row = row_of(line + 1);
+        motion[joint_of.at({row.a, row.b}) * frames + frame_of.at(row.frame)] = row.value;
+        line = std::strchr(line + 1, '\n');
+    }
+    return motion;
+}
+
+/* --- for Python ------------------------------------------------------------------------------- */
+
+nb::dict counts_dict(const grrl_perception_counts &counts)
+{
+    nb::dict dict;
+    dict["frames"] = counts.frames;
+    dict["outliers"] = counts.outliers;
+    dict["refused"] = counts.refused;
+    dict["beyond_capacity"] = counts.overflow;
+    dict["thinned"] = counts.thinned;
+    dict["keyframes"] = counts.keyframes_high;
+    return dict;
+}
+
+nb::dict answer_of(const Run &run, bool with_motion)
+{
+    grrl_report report = run.report();
+    const grrl_tracks &all = run.tracks.all;
+    nb::dict dict = model_dict(*run.perception, *report.model, large_m, report.per_metre);
+    nb::dict counts = counts_dict(run.perception->counts);
+    counts["beyond_capacity"] = all.left_out.n_points + run.perception->counts.overflow;
+    counts["empty"] = all.lost.empty;
+    counts["marked"] = all.lost.marked;
+    counts["frozen"] = all.lost.frozen;
+    counts["tracks"] = report.tracks;
+    counts["tracks_left_out"] = all.left_out.n;
+    dict["counts"] = counts;
+    dict["noise"] = report.noise;
+    nb::list warnings;
+    for (unsigned i = 0; i < run.warnings.n; i++)
+        warnings.append(run.warnings.text[i]);
+    dict["warnings"] = warnings;
+    size_t joints = report.model->n_joints;
+    if (with_motion)
+        dict["motion"] = array_of(motion_of(run), {joints, all.n_frames});
+    return dict;
+}
+
+/* Without the interpreter's lock: nothing of Python is touched. */
+void run_alone(Run &run, bool drop_lost)
+{
+    std::string wrong;
+    {
+        nb::gil_scoped_release free;
+        try {
+            run.run(drop_lost);
+        } catch (const std::invalid_argument &error) {
+            wrong = error.what();
+        }
+    }
+    if (!wrong.empty())
+        throw nb::value_error(wrong.c_str());
+}
+
+/* Positions that a reader found empty, marked and frozen. */
+using Lost = std::tuple<size_t, size_t, size_t>;
+
+nb::dict perceive(const Ids &id, const Floats &x, const Floats &y, const Counts &count,
+                  const Numbers &number, const Flags &pushing, const Flags &settled,
+                  const std::string &unit, const std::string &profile, double noise,
+                  const Lost &lost, bool drop_lost, bool said, bool with_motion)
+{
+    Run run;
+    fill(run.tracks, id, x, y, count, number, pushing, settled);
+    run.tracks.all.lost = {std::get<0>(lost), std::get<1>(lost), std::get<2>(lost)};
+    run.unit = unit_of(unit);
+    run.profile = profile;
+    run.noise = noise;
+    run.said = said;
+    run_alone(run, drop_lost);
+    return answer_of(run, with_motion);
+}
+
+/* path: as the file system has it, which need not be UTF-8. */
+nb::dict read_csv(const nb::bytes &name)
+{
+    const std::string path(name.c_str(), name.size());
+    if (path.find('\0') != std::string::npos)
+        throw nb::value_error("a path cannot hold a null character");
+    Tracks tracks;
+    grrl_tracks_error error{};
+    std::FILE *file = std::fopen(path.c_str(), "r");
+    if (file == nullptr) {
+        PyErr_SetFromErrnoWithFilenameObject(
+            PyExc_OSError, nb::steal(PyUnicode_DecodeFSDefault(path.c_str())).ptr());
+        throw nb::python_error();
+    }
+    bool good = grrl_tracks_read_csv(file, path.c_str(), &tracks.all, &error);
+    (void)std::fclose(file);
+    if (!good)
+        throw nb::value_error(error.text);
+    const grrl_tracks &all = tracks.all;
+    std::vector<int32_t> count;
+    std::vector<int64_t> number;
+    for (size_t f = 0; f < all.n_frames; f++) {
+        count.push_back(static_cast<int32_t>(all.frame[f].n));
+        number.push_back(all.frame[f].number);
+    }
+    nb::dict dict;
+    dict["id"] = array_of(std::vector<int32_t>(all.id, all.id + all.n_points), {all.n_points});
+    dict["x"] = array_of(std::vector<float>(all.x, all.x + all.n_points), {all.n_points});
+    dict["y"] = array_of(std::vector<float>(all.y, all.y + all.n_points), {all.n_points});
+    dict["count"] = array_of(std::move(count), {all.n_frames});
+    dict["number"] = array_of(std::move(number), {all.n_frames});
+    dict["in_pixels"] = all.in_pixels;
+    nb::dict lost;
+    lost["empty"] = all.lost.empty;
+    lost["marked"] = all.lost.marked;
+    lost["frozen"] = all.lost.frozen;
+    dict["lost"] = lost;
+    return dict;
+}
+
+class Perception
+{
+public:
+    Perception(const std::string &unit, const std::string &profile, double noise)
+        : unit_(unit_of(unit))
+    {
+        grrl_perception_config config =
+            profile_config(profile, noise, static_cast<double>(unit_.metres));
+        must(grrl_perception_init(perception_.get(), &config), "noise");
+    }
+
+    void observe(const Frame &frame, bool pushing)
+    {
+        grrl_frame view = frame.view();
+        grrl_perception_observe(perception_.get(), &view, pushing);
+    }
+
+    bool update()
+    {
+        grrl_status status = grrl_perception_update(perception_.get());
+        if (status != GRRL_ERR_NONE)
+            must(status, "perception");
+        return status == GRRL_OK;
+    }
+
+    void reset() { grrl_perception_reset(perception_.get()); }
+
+    nb::dict model() const
+    {
+        const grrl_model &model = *grrl_perception_model(perception_.get());
+        double per_metre = 1.0 / static_cast<double>(unit_.metres);
+        nb::dict dict = model_dict(*perception_, model, large_m, per_metre);
+        dict["counts"] = counts_dict(perception_->counts);
+        dict["noise"] = static_cast<double>(perception_->config.noise_m) * per_metre;
+        return dict;
+    }
+
+private:
+    Unit unit_;
+    std::unique_ptr<grrl_perception> perception_ = std::make_unique<grrl_perception>();
+};
+
+} // namespace
+
+void bind_perceive(nb::module_ &m)
+{
+    m.def("perceive", &perceive, nb::arg("ids"), nb::arg("x"), nb::arg("y"), nb::arg("count"),
+          nb::arg("number"), nb::arg("pushing"), nb::arg("settled"), nb::arg("unit"),
+          nb::arg("profile"), nb::arg("noise"), nb::arg("lost"), nb::arg("drop_lost"),
+          nb::arg("said"), nb::arg("motion"));
+    m.def("read_csv", &read_csv, nb::arg("path"));
+    nb::class_<Perception>(m, "Perception")
+        .def(nb::init<const std::string &, const std::string &, double>(), nb::arg("unit"),
+             nb::arg("profile"), nb::arg("noise"))
+        .def("observe", &Perception::observe, nb::arg("frame"), nb::arg("pushing"))
+        .def("update", &Perception::update)
+        .def("reset", &Perception::reset)
+        .def("model", &Perception::model);
+}
+
+} // namespace grrl_python
