@@ -116,8 +116,8 @@ static inline struct placed then(struct placed a, struct placed b)
     return (struct placed){to_world(a, b.p), a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
 }
 
-/* An empty table with keyframes that see nothing; the first and every third are at rest. Returns how
- * many there are: as many as asked for, where they fit. */
+/* An empty table with keyframes that see nothing; the first and every third are at rest. Returns
+ * how many there are: as many as asked for, where they fit. */
 static inline int scene_start(int n_keyframes)
 {
     n_keyframes = n_keyframes < GRRL_MAX_KEYFRAMES ? n_keyframes : GRRL_MAX_KEYFRAMES;
