@@ -1,6 +1,8 @@
 /* Life of the agent, messages coming in, sessions. */
 #include "agent.h"
 
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "agent_internal.h"
@@ -68,6 +70,7 @@ static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t ut
         agent_abandon(agent);
         memset(&agent->trial, 0, sizeof agent->trial);
         agent->seq = 0;
+        agent_forget_plant(agent);
     }
     agent->plant_session_id = session_id;
     agent->plant_heard_us = now;
@@ -81,7 +84,7 @@ static void on_points(const lcm_recv_buf_t *buffer, const char *channel, void *u
     struct grrl_wire_why why;
     (void)channel;
     bool good = grrl_wire_decode_points(buffer->data, buffer->data_size, &agent->points, &why);
-    const grrl_points_t *points = &agent->points.message;
+    grrl_points_t *points = &agent->points.message;
     if (accepted(agent, good, &why) && known_plant(agent, points->session_id, points->utime))
         agent_take_frame(agent, points);
 }
@@ -93,8 +96,37 @@ static void on_trial(const lcm_recv_buf_t *buffer, const char *channel, void *us
     grrl_trial_t trial;
     (void)channel;
     bool good = grrl_wire_decode_trial(buffer->data, buffer->data_size, &trial, &why);
-    if (accepted(agent, good, &why) && known_plant(agent, trial.session_id, trial.utime))
+    if (accepted(agent, good, &why) && known_plant(agent, trial.session_id, trial.utime) &&
+        agent->end != GRRL_AGENT_STOPPED)
         agent_take_trial(agent, &trial);
+}
+
+/*
+ * Whatever comes on this channel stops the agent, also what cannot be decoded: a stop sent by a
+ * robot with other message types must not be lost. Only one that names another agent is none.
+ */
+static void on_stop(const lcm_recv_buf_t *buffer, const char *channel, void *user)
+{
+    struct grrl_agent *agent = user;
+    struct grrl_wire_why why;
+    grrl_stop_t stop;
+    (void)channel;
+    bool good = grrl_wire_decode_stop(buffer->data, buffer->data_size, &stop, &why);
+    (void)accepted(agent, good, &why);
+    if (good && stop.agent_session_id != 0 && stop.agent_session_id != agent->config.session_id)
+        return;
+    memset(&agent->stop, 0, sizeof agent->stop);
+    if (good)
+        agent->stop = stop;
+    agent_abandon(agent);
+    agent->end = GRRL_AGENT_STOPPED;
+}
+
+/* Not so if the robot left it out or filled in whom else it knows. */
+static bool names_an_agent(const struct grrl_agent *agent, const grrl_push_status_t *status)
+{
+    int64_t named = status->agent_session_id;
+    return named != 0 && named != status->session_id && named != agent->plant_session_id;
 }
 
 static void on_push_status(const lcm_recv_buf_t *buffer, const char *channel, void *user)
@@ -106,9 +138,10 @@ static void on_push_status(const lcm_recv_buf_t *buffer, const char *channel, vo
     bool good = grrl_wire_decode_push_status(buffer->data, buffer->data_size, &status, &why);
     if (!accepted(agent, good, &why))
         return;
+    agent_watch_status(agent, &status);
     if (agent->config.observe || status.agent_session_id == agent->config.session_id)
         agent_take_status(agent, &status);
-    else if (status.state == GRRL_PUSH_STATUS_T_MOVING)
+    else if (status.state == GRRL_PUSH_STATUS_T_MOVING && names_an_agent(agent, &status))
         agent_meet_rival(agent);
 }
 
@@ -133,10 +166,11 @@ static enum grrl_status subscribe(struct grrl_agent *agent)
         {GRRL_CHANNEL_TRIAL, on_trial},
         {GRRL_CHANNEL_PUSH_STATUS, on_push_status},
         {GRRL_CHANNEL_DECISION, on_decision},
+        {GRRL_CHANNEL_STOP, on_stop},
     };
     for (int i = 0; i < GRRL_AGENT_SUBSCRIPTIONS; i++) {
-        if (wanted[i].handler == on_decision && !agent->config.observe)
-            continue;
+        if (wanted[i].handler == (agent->config.observe ? on_stop : on_decision))
+            continue; /* an observer moves nothing, and one who acts decides */
         agent->subscriptions[i] =
             lcm_subscribe(agent->lcm, wanted[i].channel, wanted[i].handler, agent);
         if (agent->subscriptions[i] == NULL)
@@ -171,14 +205,28 @@ void grrl_agent_tick(struct grrl_agent *agent)
     agent_publish_status(agent);
 }
 
-bool grrl_agent_finished(const struct grrl_agent *agent)
+enum grrl_agent_end grrl_agent_end(const struct grrl_agent *agent)
 {
-    return agent->finished;
+    return agent->end;
 }
 
-bool grrl_agent_gave_way(const struct grrl_agent *agent)
+bool grrl_agent_finished(const struct grrl_agent *agent)
 {
-    return agent->gave_way;
+    return agent->end == GRRL_AGENT_TRIALS_DONE || agent->end == GRRL_AGENT_SURE ||
+           agent->end == GRRL_AGENT_PUSHES_DONE;
+}
+
+const char *grrl_agent_stop_text(struct grrl_agent *agent)
+{
+    static const char *const reasons[] = {"OPERATOR", "LIMIT", "COLLISION", "FAULT"};
+    if (agent->stop.session_id == 0)
+        (void)snprintf(agent->note, sizeof agent->note,
+                       "stopped by a message on GRRL_STOP that is no stop_t of this version");
+    else
+        (void)snprintf(agent->note, sizeof agent->note,
+                       "stopped by GRRL_STOP from session %" PRId64 ", reason %s",
+                       agent->stop.session_id, reasons[agent->stop.reason]);
+    return agent->note;
 }
 
 int64_t grrl_agent_silence_us(const struct grrl_agent *agent)

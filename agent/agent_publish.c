@@ -123,10 +123,12 @@ void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *d
     make_command(agent, &decision->push);
 }
 
-static void publish_model(struct grrl_agent *agent, int64_t now)
+void agent_publish_model(struct grrl_agent *agent)
 {
     struct grrl_wire_why why;
-    agent->model.message.utime = now;
+    if (agent->config.observe)
+        return;
+    agent->model.message.utime = agent_now_us(agent);
     publish(agent, GRRL_CHANNEL_MODEL,
             grrl_wire_encode_model(&agent->model.message, GRRL_WIRE_MAX_BYTES, agent->bytes, &why),
             &why);
@@ -160,14 +162,22 @@ static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
             grrl_wire_encode_push_command(&command, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
 }
 
+/* Without a supervisor nobody waits for the model, and the agent goes on at once: it goes out with
+ * the next push. */
+static bool unjudged_model(const struct grrl_agent *agent)
+{
+    return agent->trial_id == 0 &&
+           (agent->stage == STAGE_CHOOSING || agent->stage == STAGE_COMMANDED);
+}
+
 void agent_answer(struct grrl_agent *agent)
 {
     if (agent->config.observe)
         return;
     int64_t now = agent_now_us(agent);
     agent->answered_us = now;
-    if (agent->stage == STAGE_JUDGING)
-        publish_model(agent, now);
+    if (agent->stage == STAGE_JUDGING || unjudged_model(agent))
+        agent_publish_model(agent);
     if (agent->stage == STAGE_COMMANDED)
         publish_decision(agent, now);
     publish_command(agent, now, agent->stage == STAGE_COMMANDED);

@@ -20,6 +20,7 @@ static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
     agent->adopted = false;
     agent->rest_frames = 0;
     agent->rest_ack = 0;
+    agent->in_vain = 0;
     agent->stage = STAGE_WATCHING;
     memset(&agent->status, 0, sizeof agent->status);
     memset(&agent->decision, 0, sizeof agent->decision);
@@ -49,6 +50,7 @@ static void learn(struct grrl_agent *agent, bool ended)
 static void next_push(struct grrl_agent *agent)
 {
     agent->cmd_seq++;
+    agent->plant.commanded_us = agent_now_us(agent);
     agent->adopted = true;
     agent->stage = STAGE_COMMANDED;
 }
@@ -74,9 +76,14 @@ static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
 /* It looks again, perhaps at every frame: once is enough. */
 static void tell_blind(struct grrl_agent *agent, enum grrl_status status)
 {
+    const struct grrl_model *model = grrl_perception_model(&agent->learner.perception);
+    const char *text = grrl_status_text(status);
+    if (status == GRRL_ERR_NONE)
+        text = model->n_bodies == 0
+                   ? "no link is seen that could be pushed: each needs four points or more"
+                   : "no push stays on --table: move the object away from its edge";
     if (!agent->blind)
-        agent_note(agent, status == GRRL_ERR_NONE ? "no link is seen that could be pushed"
-                                                  : grrl_status_text(status));
+        agent_note(agent, text);
     agent->blind = true;
 }
 
@@ -89,7 +96,7 @@ static void choose(struct grrl_agent *agent)
             next_push(agent);
         return;
     }
-    enum grrl_status status = grrl_learner_choose(&agent->learner, &decision);
+    enum grrl_status status = agent_choose(agent, &decision);
     if (status != GRRL_OK) {
         tell_blind(agent, status);
         return;
@@ -118,11 +125,56 @@ static void judged(struct grrl_agent *agent)
         end_trial(agent);
 }
 
+/* A joint that has not moved yet shows in no pair: so many pushes for each link must have been in
+ * vain. With none, the first joint that is found ends the run (tests/processes/test_alone.cpp). */
+enum { VAIN_PER_LINK = 3 };
+
+/* Without a supervisor: whether what was asked for is known, or all pushes are made. */
+static enum grrl_agent_end end_alone(const struct grrl_agent *agent)
+{
+    const struct grrl_agent_config *config = &agent->config;
+    uint8_t n = grrl_perception_model(&agent->learner.perception)->n_bodies;
+    uint8_t a, b;
+    if (config->until_sure > 0.0f && agent->in_vain >= VAIN_PER_LINK * n &&
+        grrl_agent_sureness(agent, &a, &b) >= config->until_sure)
+        return GRRL_AGENT_SURE;
+    if (config->most_pushes > 0 && agent->cmd_seq >= config->most_pushes)
+        return GRRL_AGENT_PUSHES_DONE;
+    return GRRL_AGENT_GOES_ON;
+}
+
+/* Nobody judges: the agent does itself. */
+static void judge_alone(struct grrl_agent *agent)
+{
+    learn(agent, false);
+    agent->in_vain = agent->update.reward > 0.0f ? 0 : agent->in_vain + (agent->cmd_seq > 0);
+    enum grrl_agent_end end = end_alone(agent);
+    if (end == GRRL_AGENT_GOES_ON) {
+        choose(agent);
+        return;
+    }
+    agent_publish_model(agent); /* no push follows with which it would go */
+    end_trial(agent);
+    agent->end = end;
+}
+
 static void judge_if_told(struct grrl_agent *agent)
 {
-    bool alone = agent->trial_id == 0; /* nobody judges */
-    if (agent->stage == STAGE_JUDGING && (alone || agent->trial.judged_cmd_seq == agent->cmd_seq))
+    if (agent->stage != STAGE_JUDGING)
+        return;
+    if (agent->trial_id == 0)
+        judge_alone(agent);
+    else if (agent->trial.judged_cmd_seq == agent->cmd_seq)
         judged(agent);
+}
+
+static void tell_supervised(struct grrl_agent *agent)
+{
+    const struct grrl_agent_config *config = &agent->config;
+    if (!agent->supervised && (config->most_pushes > 0 || config->until_sure > 0.0f))
+        agent_note(agent, "a supervisor ends the trials here: --pushes and --until-sure are for "
+                          "runs without one and do nothing");
+    agent->supervised = true;
 }
 
 void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
@@ -139,15 +191,18 @@ void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
     if (!same) {
         agent_abandon(agent);
         /* Under way already: joined in the middle, the beginning was missed. */
-        if (running && trial->judged_cmd_seq < 0)
+        if (running && trial->judged_cmd_seq < 0) {
+            tell_supervised(agent);
             begin_trial(agent, trial->trial_id);
+        }
     } else if (!running && trial->outcome == GRRL_TRIAL_T_ABORTED) {
         end_trial(agent);
     } else {
         judge_if_told(agent);
     }
     agent_answer(agent);
-    agent->finished = agent->finished || trial->phase == GRRL_TRIAL_T_FINISHED;
+    if (trial->phase == GRRL_TRIAL_T_FINISHED && agent->end == GRRL_AGENT_GOES_ON)
+        agent->end = GRRL_AGENT_TRIALS_DONE;
 }
 
 void agent_meet_rival(struct grrl_agent *agent)
@@ -156,7 +211,7 @@ void agent_meet_rival(struct grrl_agent *agent)
     if (!alone)
         return; /* with a supervisor, the frames tell whose pushes they show */
     agent_abandon(agent);
-    agent->gave_way = true;
+    agent->end = GRRL_AGENT_GAVE_WAY;
 }
 
 /* Whether a frame shows another agent's pushes. Then it teaches nothing here, but this agent stays
@@ -236,11 +291,12 @@ static void settled(struct grrl_agent *agent)
     if (status != GRRL_OK)
         tell_blind(agent, status);
     agent_make_model(agent);
+    agent_event(agent, GRRL_AGENT_PERCEIVED);
     agent->stage = STAGE_JUDGING;
     judge_if_told(agent);
 }
 
-static void watch(struct grrl_agent *agent, const grrl_points_t *points)
+static void watch(struct grrl_agent *agent, grrl_points_t *points)
 {
     int32_t ack;
     int8_t phase = phase_of(agent, points, &ack);
@@ -251,7 +307,8 @@ static void watch(struct grrl_agent *agent, const grrl_points_t *points)
     bool idle = agent->stage == STAGE_CHOOSING && !agent->config.observe;
     if (idle && phase == GRRL_POINTS_T_SETTLED)
         agent->stage = STAGE_WATCHING; /* nothing was seen that could be pushed: look again */
-    if (agent->stage != STAGE_WATCHING || ack != agent->cmd_seq)
+    if (agent->stage != STAGE_WATCHING || ack != agent->cmd_seq ||
+        !agent_admit_frame(agent, points))
         return;
     struct grrl_frame frame = {(uint32_t)points->n_points, points->id, points->x, points->y};
     grrl_learner_observe(&agent->learner, &frame, phase == GRRL_POINTS_T_PUSHING);
@@ -259,13 +316,16 @@ static void watch(struct grrl_agent *agent, const grrl_points_t *points)
         settled(agent);
 }
 
-void agent_take_frame(struct grrl_agent *agent, const grrl_points_t *points)
+void agent_take_frame(struct grrl_agent *agent, grrl_points_t *points)
 {
-    if (agent->gave_way || shows_rival(agent, points))
+    bool over = agent->end != GRRL_AGENT_GOES_ON && agent->end != GRRL_AGENT_TRIALS_DONE;
+    if (over || shows_rival(agent, points))
         return;
     if (points->trial_id == 0 && agent->stage == STAGE_NONE && agent->trial.revision == 0)
         begin_trial(agent, 0);
-    if (agent->stage == STAGE_NONE || points->trial_id != agent->trial_id)
+    bool ours = agent->stage != STAGE_NONE && points->trial_id == agent->trial_id;
+    agent_watch_frame(agent, points, ours);
+    if (!ours)
         return; /* the word about this trial has not come yet; it is repeated */
     agent->lock_step = points->mode == GRRL_POINTS_T_LOCK_STEP;
     int before = agent->stage;
@@ -280,6 +340,8 @@ void agent_take_frame(struct grrl_agent *agent, const grrl_points_t *points)
     }
     bool waits = agent->stage == STAGE_JUDGING || agent->stage == STAGE_COMMANDED;
     bool due = waits && agent_now_us(agent) - agent->answered_us >= RESEND_US;
+    if (before == STAGE_COMMANDED && agent->stage == STAGE_COMMANDED && due)
+        agent_watch_resend(agent);
     if (agent->lock_step || agent->stage != before || due)
         agent_answer(agent);
 }

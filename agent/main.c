@@ -5,14 +5,19 @@
 #include <string.h>
 
 #include "agent.h"
+#include "found.h"
 #include "options.h"
 #include "process.h"
 #include "store_file.h"
 
 static struct grrl_agent agent; /* large, and there is one */
 
+/* Beyond EXIT_FAILURE and the 2 of a wrong command line. */
+enum { EXIT_STOPPED = 3 };
+
 struct run {
     struct grrl_agent_options options;
+    struct grrl_found found;
     bool failed;
     int32_t trials; /* that count */
     int64_t pushes; /* in them */
@@ -48,6 +53,10 @@ static void explain(const grrl_decision_t *decision)
 
 static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
 {
+    if (event->trial_id == 0) { /* nobody judged: how it ended, the end of the run tells */
+        save(run);
+        return;
+    }
     static const char *const outcomes[] = {"ended", "discovered", "capped", "aborted"};
     if (event->outcome != GRRL_TRIAL_T_ABORTED) {
         run->trials++;
@@ -71,6 +80,12 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     case GRRL_AGENT_NOTE:
         if (!run->options.quiet)
             (void)fprintf(stderr, "grrl-agent: %s\n", event->text);
+        break;
+    case GRRL_AGENT_PERCEIVED:
+        if (run->options.explain || event->trial_id == 0)
+            grrl_found_take(&run->found, &agent, event);
+        if (run->options.explain)
+            grrl_found_print_line(&run->found);
         break;
     case GRRL_AGENT_DECIDED:
         if (run->options.explain)
@@ -129,6 +144,33 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
     return !run->failed;
 }
 
+/* What the run came to, and what the tracker and the robot did wrong. */
+static void tell_end(struct run *run)
+{
+    const double wanted = (double)run->options.until_sure;
+    enum grrl_agent_end end = grrl_agent_end(&agent);
+    bool unsure = end == GRRL_AGENT_PUSHES_DONE && wanted > 0.0;
+    if (unsure) /* not what was asked for */
+        (void)fprintf(stderr,
+                      "grrl-agent: not sure after %" PRId32 " pushes: a pair of links is decided "
+                      "with probability %.3f, --until-sure %g\n",
+                      run->found.pushes, (double)run->found.sure, wanted);
+    run->failed = run->failed || unsure;
+    if (run->options.quiet)
+        return;
+    if (end == GRRL_AGENT_SURE)
+        (void)printf("sure: every pair of links is decided with probability %.3f or more\n",
+                     (double)run->found.sure);
+    if (run->found.trial_id == 0)
+        grrl_found_print(&run->found);
+    for (int i = 0; i < GRRL_AGENT_MISTAKES; i++) {
+        int64_t n = grrl_agent_mistakes(&agent, (enum grrl_agent_mistake)i);
+        if (n > 0)
+            (void)fprintf(stderr, "grrl-agent: in all %" PRId64 " %s\n", n,
+                          grrl_agent_mistake_text((enum grrl_agent_mistake)i));
+    }
+}
+
 static int run_agent(struct run *run)
 {
     const struct grrl_policy_type *type = run->options.policy;
@@ -136,6 +178,10 @@ static int run_agent(struct run *run)
         .learner = run->options.learner,
         .session_id = grrl_process_random_session(),
         .observe = run->options.observe,
+        .table = run->options.table,
+        .most_pushes = run->options.pushes,
+        .until_sure = run->options.until_sure,
+        .pair = grrl_perception_pair,
         .now_us = grrl_process_now_us,
         .on_event = on_event,
         .context = run,
@@ -155,10 +201,13 @@ static int run_agent(struct run *run)
         loop(run, lcm);
         grrl_agent_close(&agent);
         save(run);
+        tell_end(run);
     }
     if (lcm != NULL)
         lcm_destroy(lcm);
     free(memory);
+    if (started && grrl_agent_end(&agent) == GRRL_AGENT_STOPPED)
+        return EXIT_STOPPED;
     return started && !run->failed ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

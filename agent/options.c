@@ -4,16 +4,18 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_PARAMETERS = 32, HELP_BYTES = 160 };
+enum { MOST_PARAMETERS = 32, N_LIMITS = 6, HELP_BYTES = 160 };
 
 static const struct grrl_program program = {
     .name = "grrl-agent",
     .usage = "grrl-agent [OPTION]...",
     .intro = "Learns to find out how articulated objects move by pushing them.\n"
              "Waits for feature points on LCM; grrl-sim sends some.\n",
-    .outro = "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
-             "Exit status: 0 all trials done, log read or stopped by a signal; 1 trouble;\n"
-             "2 wrong command line.\n",
+    .outro =
+        "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
+        "Exit status: 0 all trials done, sure (--until-sure), all --pushes done, log read or\n"
+        "stopped by a signal; 1 trouble, or --pushes done and not sure; 2 wrong command line;\n"
+        "3 stopped by GRRL_STOP.\n",
 };
 
 /* A policy's configuration, whatever its type. */
@@ -105,6 +107,91 @@ static const char *take_noise(void *context, const char *text)
     return NULL;
 }
 
+static const char *take_table(void *context, const char *text)
+{
+    static const char right[] = "X0,Y0,X1,Y1 in metres, X0 below X1 and Y0 below Y1, -1000 to 1000";
+    char copy[HELP_BYTES];
+    double value[4];
+    if (strlen(text) >= sizeof copy)
+        return right;
+    (void)snprintf(copy, sizeof copy, "%s", text);
+    char *at = copy;
+    for (int i = 0; i < 4; i++) {
+        char *comma = strchr(at, ',');
+        if ((comma == NULL) != (i == 3))
+            return right;
+        if (comma != NULL)
+            *comma = '\0';
+        if (!grrl_option_number_of(at, &value[i]) || value[i] < -1e3 || value[i] > 1e3)
+            return right;
+        at = comma + 1;
+    }
+    struct grrl_agent_table table = {(float)value[0], (float)value[1], (float)value[2],
+                                     (float)value[3]};
+    if (!(table.x0_m < table.x1_m && table.y0_m < table.y1_m))
+        return right;
+    *(struct grrl_agent_table *)context = table;
+    return NULL;
+}
+
+/* What a push may be, as the robot's builder gives it; 0: the default. */
+struct limits {
+    double force_n;
+    double speed_m_s;
+    double travel_m;
+    double until_sure;
+};
+
+/* The timeout leaves as long a way to the first contact at another speed as the default does. */
+static void take_limits(const struct limits *limits, struct grrl_agent_options *options)
+{
+    struct grrl_grounding_config *push = &options->learner.grounding;
+    float way_m = push->speed_m_s * push->timeout_s - push->travel_m;
+    if (limits->force_n > 0.0)
+        push->force_n = (float)limits->force_n;
+    if (limits->speed_m_s > 0.0)
+        push->speed_m_s = (float)limits->speed_m_s;
+    if (limits->travel_m > 0.0)
+        push->travel_m = (float)limits->travel_m;
+    if (limits->speed_m_s > 0.0 || limits->travel_m > 0.0)
+        push->timeout_s = (way_m + push->travel_m) / push->speed_m_s;
+    options->until_sure = (float)limits->until_sure;
+}
+
+/* Rows of what concerns pushes; returns how many. */
+static size_t add_limits(struct limits *limits, struct grrl_agent_options *options,
+                         struct grrl_option *rows)
+{
+    const struct grrl_option own[N_LIMITS] = {
+        grrl_option_call("table", "X0,Y0,X1,Y1",
+                         "refuse points and pushes beside this rectangle, metres; needed where\n"
+                         "points span more than 2 m",
+                         take_table, &options->table),
+        grrl_option_number("force", "N", "push with at most N newtons, 0.1 to 100 (10)", 0.1, 100.0,
+                           1.0, &limits->force_n),
+        grrl_option_number("speed", "V", "push at V metres a second, 0.005 to 0.5 (0.08)", 0.005,
+                           0.5, 1.0, &limits->speed_m_s),
+        grrl_option_number("travel", "MM",
+                           "push on for MM millimetres after the first contact, 5 to 200 (30)", 5.0,
+                           200.0, 0.001, &limits->travel_m),
+        grrl_option_int("pushes", "N", "without a supervisor: end after N pushes (no end)", 1,
+                        1000000, &options->pushes),
+        grrl_option_number("until-sure", "P",
+                           "without a supervisor: end when every pair of links is decided with\n"
+                           "probability P, 0.5 to 0.999 (no end)",
+                           0.5, 0.999, 1.0, &limits->until_sure),
+    };
+    memcpy(rows, own, sizeof own);
+    return N_LIMITS;
+}
+
+static bool pushes_itself(const struct grrl_agent_options *options, const struct limits *limits)
+{
+    return options->pushes > 0 || options->table.x0_m < options->table.x1_m ||
+           limits->until_sure > 0.0 || limits->force_n > 0.0 || limits->speed_m_s > 0.0 ||
+           limits->travel_m > 0.0;
+}
+
 /* Makes the policy's configuration from what was given; RUN if it fits the policy. */
 static enum grrl_options_result configure(const struct given *given, size_t n,
                                           struct grrl_agent_options *options)
@@ -137,6 +224,7 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
 {
     char policies[4 * HELP_BYTES];
     struct given given[MOST_PARAMETERS];
+    struct limits limits = {0.0, 0.0, 0.0, 0.0};
     struct grrl_option rows[GRRL_OPTIONS_MOST];
     memset(options, 0, sizeof *options);
     grrl_learner_config_default(&options->learner);
@@ -163,15 +251,23 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
         grrl_option_text("lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0",
                          &options->lcm_url),
         grrl_option_flag("quiet", "print errors only", &options->quiet),
-        grrl_option_flag("explain", "print a line for each decision: what and why",
+        grrl_option_flag("explain", "print a line for each model and each decision: what and why",
                          &options->explain),
     };
     enum { OWN = sizeof own / sizeof own[0] };
-    _Static_assert((int)OWN + (int)MOST_PARAMETERS <= (int)GRRL_OPTIONS_MOST, "all rows fit");
+    _Static_assert((int)OWN + (int)N_LIMITS + (int)MOST_PARAMETERS <= (int)GRRL_OPTIONS_MOST,
+                   "all rows fit");
     memcpy(rows, own, sizeof own);
-    size_t n = add_parameters(given, rows + OWN);
-    enum grrl_options_result result = grrl_options_parse(&program, rows, OWN + n, argc, argv, NULL);
+    size_t fixed = OWN + add_limits(&limits, options, rows + OWN);
+    size_t n = add_parameters(given, rows + fixed);
+    enum grrl_options_result result =
+        grrl_options_parse(&program, rows, fixed + n, argc, argv, NULL);
     if (result == GRRL_OPTIONS_RUN && options->quiet && options->explain)
         return grrl_options_wrong(&program, "--quiet and --explain contradict each other");
+    if (result == GRRL_OPTIONS_RUN && options->observe && pushes_itself(options, &limits))
+        return grrl_options_wrong(&program,
+                                  "--observe pushes nothing: --table, --force, --speed, --travel, "
+                                  "--pushes and --until-sure go without it");
+    take_limits(&limits, options);
     return result == GRRL_OPTIONS_RUN ? configure(given, n, options) : result;
 }

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "agent.h"
 #include "cli/options.h"
 #include "grrl/learner/learner.h"
 #include "grrl/policies.h"
@@ -17,6 +18,9 @@ struct grrl_agent_options {
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;
     double tracker_timeout_s; /* 0: wait for ever */
+    struct grrl_agent_table table;
+    int pushes;       /* 0: no end */
+    float until_sure; /* 0: never */
     bool observe;
     bool quiet;
     bool explain;

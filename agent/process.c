@@ -102,10 +102,14 @@ lcm_t *grrl_process_open_lcm(const char *program, const char *url)
     return NULL;
 }
 
-bool grrl_process_attended(struct grrl_process_watch *watch, const struct grrl_agent *agent)
+bool grrl_process_attended(struct grrl_process_watch *watch, struct grrl_agent *agent)
 {
     int64_t silence_us = grrl_agent_silence_us(agent);
-    if (grrl_agent_gave_way(agent)) {
+    if (grrl_agent_end(agent) == GRRL_AGENT_STOPPED) {
+        (void)fprintf(stderr, "%s: %s\n", watch->program, grrl_agent_stop_text(agent));
+        return false;
+    }
+    if (grrl_agent_end(agent) == GRRL_AGENT_GAVE_WAY) {
         (void)fprintf(stderr,
                       "%s: the robot moves for another agent: stop one of the two, then start this "
                       "one again\n",

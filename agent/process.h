@@ -38,8 +38,8 @@ struct grrl_process_watch {
     int64_t hinted_us;
 };
 
-/* Whether to go on: not without end when the simulator or tracker is gone, nor beside an agent that
- * moves the same robot. Says so on stderr, and every 5 s what it waits for. */
-bool grrl_process_attended(struct grrl_process_watch *watch, const struct grrl_agent *agent);
+/* Whether to go on: not after GRRL_STOP, not without end when the simulator or tracker is gone, nor
+ * beside an agent that moves the same robot. Says so on stderr, and every 5 s what it waits for. */
+bool grrl_process_attended(struct grrl_process_watch *watch, struct grrl_agent *agent);
 
 #endif

@@ -56,11 +56,14 @@ std::string Progress::line() const
         (void)std::snprintf(left, sizeof left, "%ld:%02ld", seconds / 60, seconds % 60);
     }
     char text[160];
-    (void)std::snprintf(text, sizeof text, "[%s] %3.0f%%  %lld of %lld %s, %s left, %.0f pushes/s",
-                        bar.c_str(), 100.0 * share, static_cast<long long>(parts_done_),
-                        static_cast<long long>(parts_), name_of_parts_, left,
-                        static_cast<double>(pushes_) / std::max(elapsed, 0.001));
-    return text;
+    (void)std::snprintf(text, sizeof text, "[%s] %3.0f%%  %lld of %lld %s, %s left", bar.c_str(),
+                        100.0 * share, static_cast<long long>(parts_done_),
+                        static_cast<long long>(parts_), name_of_parts_, left);
+    char rate[40] = "";
+    if (pushes_ > 0)
+        (void)std::snprintf(rate, sizeof rate, ", %.0f pushes/s",
+                            static_cast<double>(pushes_) / std::max(elapsed, 0.001));
+    return std::string(text) + rate;
 }
 
 void Progress::print()

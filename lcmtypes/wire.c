@@ -13,8 +13,8 @@ _Static_assert(GRRL_WIRE_MAX_LINKS >= GRRL_MAX_LINKS, "every link fits a model_t
 _Static_assert(GRRL_WIRE_MAX_JOINTS >= GRRL_MAX_JOINTS, "every joint fits a model_t");
 _Static_assert(sizeof(float) == 4, "IEEE single precision");
 
-enum kind { I8, I16, I32, I64, F32 };
-static const uint8_t kind_bytes[] = {1, 2, 4, 8, 4};
+enum kind { I8, I16, I32, I64, F32, BYTE };
+static const uint8_t kind_bytes[] = {1, 2, 4, 8, 4, 1};
 
 /* One field of a message: its place in the struct and its allowed values. The rows of a table
  * follow the order of the .lcm file, which is the order of the bytes. */
@@ -59,6 +59,7 @@ enum { HEAD_BYTES = 8 };
 #define ANY_FLOAT -(double)FLT_MAX, (double)FLT_MAX
 #define COORDINATE -1000.0, 1000.0
 #define LENGTH 0.0, 1000.0
+#define PICTURE_SIDE 16, 4096
 #define LINK_INDEX 0.0, GRRL_WIRE_MAX_LINKS - 1
 
 #define P grrl_points_t
@@ -191,6 +192,33 @@ static const struct field agent_status_fields[] = {
 };
 #undef A
 
+#define I grrl_image_t
+static const struct field image_fields[] = {
+    ONE(I, I64, utime, ANY64),
+    ONE(I, I64, session_id, POSITIVE64),
+    ONE(I, I64, seq, POSITIVE64),
+    ONE(I, I32, trial_id, COUNT32),
+    ONE(I, I32, ack_cmd_seq, COUNT32),
+    ONE(I, I64, agent_session_id, COUNT64),
+    ONE(I, I8, mode, GRRL_POINTS_T_REAL_TIME, GRRL_POINTS_T_LOCK_STEP),
+    ONE(I, I8, phase, GRRL_POINTS_T_UNKNOWN, GRRL_POINTS_T_SETTLED),
+    ONE(I, I32, width, PICTURE_SIDE),
+    ONE(I, I32, height, PICTURE_SIDE),
+    ONE(I, I8, encoding, GRRL_IMAGE_T_RAW_GREY, GRRL_IMAGE_T_PNG),
+    ONE(I, I32, n_bytes, 1, GRRL_WIRE_MAX_PICTURE),
+    MANY(I, BYTE, data, n_bytes, 0, 255),
+};
+#undef I
+
+#define S grrl_stop_t
+static const struct field stop_fields[] = {
+    ONE(S, I64, utime, ANY64),
+    ONE(S, I64, session_id, POSITIVE64),
+    ONE(S, I64, agent_session_id, COUNT64),
+    ONE(S, I8, reason, GRRL_STOP_T_OPERATOR, GRRL_STOP_T_FAULT),
+};
+#undef S
+
 /* The address of value i of a field. A variable array is a pointer in the struct; memcpy reads it
  * regardless of the pointer's type. */
 static unsigned char *place(const struct field *field, void *message, uint32_t i)
@@ -286,6 +314,11 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
                            type->name, field->name, (unsigned)size);
             return false;
         }
+        if (field->kind == BYTE) { /* every value is right, and there may be a million */
+            memcpy(place(field, message, 0), bytes + at, n);
+            at += n;
+            continue;
+        }
         for (uint32_t i = 0; i < n; i++, at += width) {
             unsigned char *to = place(field, message, i);
             store((enum kind)field->kind, big_endian(bytes + at, width), to);
@@ -305,7 +338,7 @@ static bool check(const struct type *type, const void *message, struct grrl_wire
 {
     for (size_t f = 0; f < type->n_fields; f++) {
         const struct field *field = &type->fields[f];
-        uint32_t n = count(field, message);
+        uint32_t n = field->kind == BYTE ? 0 : count(field, message);
         const unsigned char *base = (const unsigned char *)message + field->offset;
         if (field->n == 0) {
             const void *array;
@@ -351,6 +384,20 @@ static bool check_indices(const grrl_model_t *model, struct grrl_wire_why *why)
     return true;
 }
 
+/* A picture without coding has a byte a pixel, or three. */
+static bool check_picture(const grrl_image_t *image, struct grrl_wire_why *why)
+{
+    int32_t pixels = image->width * image->height;
+    int32_t bytes = image->encoding == GRRL_IMAGE_T_RAW_GREY  ? pixels
+                    : image->encoding == GRRL_IMAGE_T_RAW_BGR ? 3 * pixels
+                                                              : image->n_bytes;
+    if (image->n_bytes == bytes)
+        return true;
+    (void)snprintf(why->text, sizeof why->text, "image_t: n_bytes is %d, %d x %d pixels are %d",
+                   (int)image->n_bytes, (int)image->width, (int)image->height, (int)bytes);
+    return false;
+}
+
 #define TYPE(x)                                                                                    \
     static const struct type x##_type = {#x "_t", __grrl_##x##_t_get_hash, x##_fields,             \
                                          sizeof x##_fields / sizeof x##_fields[0]};
@@ -378,6 +425,8 @@ TYPE(push_status)
 TYPE(trial)
 TYPE(decision)
 TYPE(agent_status)
+TYPE(image)
+TYPE(stop)
 
 ENCODE(points)
 ENCODE(push_command)
@@ -385,12 +434,14 @@ ENCODE(push_status)
 ENCODE(trial)
 ENCODE(decision)
 ENCODE(agent_status)
+ENCODE(stop)
 
 DECODE(push_command)
 DECODE(push_status)
 DECODE(trial)
 DECODE(decision)
 DECODE(agent_status)
+DECODE(stop)
 
 bool grrl_wire_decode_points(const void *data, uint32_t size, struct grrl_wire_points *out,
                              struct grrl_wire_why *why)
@@ -412,6 +463,26 @@ int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *d
     if (!check(&model_type, message, why) || !check_indices(message, why))
         return -1;
     return encoded(&model_type, grrl_model_t_encode(data, 0, capacity, message), why);
+}
+
+bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_image *out,
+                            struct grrl_wire_why *why)
+{
+    grrl_wire_bind_image(out);
+    return decode(&image_type, data, size, &out->message, why) && check_picture(&out->message, why);
+}
+
+int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
+                           struct grrl_wire_why *why)
+{
+    if (!check(&image_type, message, why) || !check_picture(message, why))
+        return -1;
+    return encoded(&image_type, grrl_image_t_encode(data, 0, capacity, message), why);
+}
+
+void grrl_wire_bind_image(struct grrl_wire_image *image)
+{
+    image->message.data = image->data;
 }
 
 void grrl_wire_bind_points(struct grrl_wire_points *points)

@@ -21,10 +21,12 @@
 #include "channels.h"
 #include "grrl_agent_status_t.h"
 #include "grrl_decision_t.h"
+#include "grrl_image_t.h"
 #include "grrl_model_t.h"
 #include "grrl_points_t.h"
 #include "grrl_push_command_t.h"
 #include "grrl_push_status_t.h"
+#include "grrl_stop_t.h"
 #include "grrl_trial_t.h"
 
 #include "grrl/base/api.h"
@@ -36,7 +38,9 @@ enum {
     GRRL_WIRE_MAX_POINTS = 256,
     GRRL_WIRE_MAX_LINKS = 32,
     GRRL_WIRE_MAX_JOINTS = 64,
-    GRRL_WIRE_MAX_BYTES = 4096 /* fits the largest encoded message */
+    GRRL_WIRE_MAX_BYTES = 4096,              /* fits every encoded message but image_t */
+    GRRL_WIRE_MAX_PICTURE = 4 * 1024 * 1024, /* bytes of an image_t's picture */
+    GRRL_WIRE_MAX_IMAGE_BYTES = GRRL_WIRE_MAX_PICTURE + 128 /* fits an image_t */
 };
 
 /* Why a message was refused: type, field and value, in English. */
@@ -75,9 +79,16 @@ struct grrl_wire_model {
     int8_t feature_link[GRRL_WIRE_MAX_POINTS];
 };
 
+/* For processes that deal in pictures; of static storage or on the heap, never on the stack. */
+struct grrl_wire_image {
+    grrl_image_t message;
+    uint8_t data[GRRL_WIRE_MAX_PICTURE];
+};
+
 /* Points the message's arrays at its own storage. Call it before filling a message by hand. */
 void grrl_wire_bind_points(struct grrl_wire_points *points);
 void grrl_wire_bind_model(struct grrl_wire_model *model);
+void grrl_wire_bind_image(struct grrl_wire_image *image);
 
 bool grrl_wire_decode_points(const void *data, uint32_t size, struct grrl_wire_points *out,
                              struct grrl_wire_why *why);
@@ -93,8 +104,14 @@ bool grrl_wire_decode_decision(const void *data, uint32_t size, grrl_decision_t 
                                struct grrl_wire_why *why);
 bool grrl_wire_decode_agent_status(const void *data, uint32_t size, grrl_agent_status_t *out,
                                    struct grrl_wire_why *why);
+bool grrl_wire_decode_stop(const void *data, uint32_t size, grrl_stop_t *out,
+                           struct grrl_wire_why *why);
 
-/* capacity: size of data in bytes; GRRL_WIRE_MAX_BYTES is enough for every message. */
+bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_image *out,
+                            struct grrl_wire_why *why);
+
+/* capacity: size of data in bytes. GRRL_WIRE_MAX_BYTES is enough for every message but image_t,
+ * which needs GRRL_WIRE_MAX_IMAGE_BYTES. */
 int grrl_wire_encode_points(const grrl_points_t *message, int capacity, uint8_t *data,
                             struct grrl_wire_why *why);
 int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *data,
@@ -109,6 +126,10 @@ int grrl_wire_encode_decision(const grrl_decision_t *message, int capacity, uint
                               struct grrl_wire_why *why);
 int grrl_wire_encode_agent_status(const grrl_agent_status_t *message, int capacity, uint8_t *data,
                                   struct grrl_wire_why *why);
+int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
+                           struct grrl_wire_why *why);
+int grrl_wire_encode_stop(const grrl_stop_t *message, int capacity, uint8_t *data,
+                          struct grrl_wire_why *why);
 
 GRRL_API_END
 

@@ -141,13 +141,33 @@ void grrl_handle_free(struct grrl_handle *handle)
     *handle = (struct grrl_handle){.rows_m = NULL};
 }
 
+static const char *name_of(enum grrl_trajectory_answer answer)
+{
+    static const char *const names[] = {[GRRL_TRAJECTORY_UNDETERMINED] = "undetermined",
+                                        [GRRL_TRAJECTORY_REVOLUTE] = "revolute",
+                                        [GRRL_TRAJECTORY_PRISMATIC] = "prismatic",
+                                        [GRRL_TRAJECTORY_RIGID] = "rigid",
+                                        [GRRL_TRAJECTORY_NEITHER] = "neither"};
+    return names[answer];
+}
+
+/* Of the answer; of none, the greatest. */
+static float probability_of(const struct grrl_trajectory_fit *fit)
+{
+    const float p[] = {fit->revolute.probability, fit->prismatic.probability, fit->p_rigid,
+                       fit->p_neither};
+    float most = 0.0f;
+    for (size_t i = 0; i < sizeof p / sizeof *p; i++)
+        most = p[i] > most ? p[i] : most;
+    return most;
+}
+
 static void print_text(FILE *file, const struct grrl_trajectory_fit *fit, uint32_t n,
                        const char *unit, double scale)
 {
     const struct grrl_trajectory_model *r = &fit->revolute;
     const struct grrl_trajectory_model *p = &fit->prismatic;
-    (void)fprintf(file, "%s %.3f\n", fit->type == GRRL_REVOLUTE ? "revolute" : "prismatic",
-                  (double)(fit->type == GRRL_REVOLUTE ? r : p)->probability);
+    (void)fprintf(file, "%s %.3f\n", name_of(fit->answer), (double)probability_of(fit));
     (void)fprintf(file,
                   "  revolute  %.3f: centre (%.4g, %.4g, %.4g), axis (%.3f, %.3f, %.3f), radius "
                   "%.4g %s, %.1f degrees, residual %.2g %s\n",
@@ -162,8 +182,13 @@ static void print_text(FILE *file, const struct grrl_trajectory_fit *fit, uint32
                   (double)p->point_m[1] * scale, (double)p->point_m[2] * scale, (double)p->axis[0],
                   (double)p->axis[1], (double)p->axis[2], (double)p->travel * scale, unit,
                   (double)p->residual_m * scale, unit);
-    (void)fprintf(file, "  %u samples, %u outliers left out, %.2g %s out of the plane\n",
-                  (unsigned)n, (unsigned)fit->outliers, (double)fit->out_of_plane_m * scale, unit);
+    (void)fprintf(file,
+                  "  rigid     %.3f\n  neither   %.3f: slow residuals of the circle %.2g %s\n",
+                  (double)fit->p_rigid, (double)fit->p_neither, (double)fit->slow_m * scale, unit);
+    (void)fprintf(file,
+                  "  %u samples, worth %.3g, %u outliers left out, %.2g %s out of the plane\n",
+                  (unsigned)n, (double)fit->effective_samples, (unsigned)fit->outliers,
+                  (double)fit->out_of_plane_m * scale, unit);
 }
 
 static void print_json_model(FILE *file, const char *name,
@@ -184,15 +209,20 @@ static void print_json(FILE *file, const struct grrl_trajectory_fit *fit, uint32
     (void)fprintf(file,
                   "{\n  \"format\": \"grrl-perceive handle 1\",\n  \"type\": \"%s\", \"unit\": "
                   "\"%s\",\n",
-                  fit->type == GRRL_REVOLUTE ? "revolute" : "prismatic", unit);
+                  name_of(fit->answer), unit);
     print_json_model(file, "revolute", &fit->revolute, scale);
     (void)fprintf(file, "\"radius\": %.6g, \"travel_degrees\": %.6g},\n",
                   (double)fit->radius_m * scale,
                   (double)fit->revolute.travel * 180.0 / (double)GRRL_PI);
     print_json_model(file, "prismatic", &fit->prismatic, scale);
     (void)fprintf(file, "\"travel\": %.6g},\n", (double)fit->prismatic.travel * scale);
-    (void)fprintf(file, "  \"samples\": %u, \"outliers\": %u, \"out_of_plane\": %.6g\n}\n",
-                  (unsigned)n, (unsigned)fit->outliers, (double)fit->out_of_plane_m * scale);
+    (void)fprintf(file, "  \"p_rigid\": %.6g, \"p_neither\": %.6g, \"slow_residual\": %.6g,\n",
+                  (double)fit->p_rigid, (double)fit->p_neither, (double)fit->slow_m * scale);
+    (void)fprintf(file,
+                  "  \"samples\": %u, \"effective_samples\": %.6g, \"outliers\": %u, "
+                  "\"out_of_plane\": %.6g\n}\n",
+                  (unsigned)n, (double)fit->effective_samples, (unsigned)fit->outliers,
+                  (double)fit->out_of_plane_m * scale);
 }
 
 void grrl_handle_print(FILE *file, const struct grrl_trajectory_fit *fit, uint32_t n,

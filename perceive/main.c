@@ -88,7 +88,8 @@ static int perceive_handle(const struct grrl_perceive_options *options)
     uint32_t n = handle.trajectory.n;
     grrl_handle_free(&handle);
     if (status == GRRL_ERR_NONE)
-        return fail("the handle stays in one place; a movement of some centimetres is needed");
+        return fail("fewer than five samples are near their neighbours; is the unit right? See "
+                    "--unit and --noise");
     if (status == GRRL_ERR_NUMBER)
         return fail("a position is beyond 1 km; is the unit right? See --unit");
     if (status != GRRL_OK)

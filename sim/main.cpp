@@ -161,8 +161,10 @@ bool wait_for_agent(const Node &node, const Options &options, int64_t &hint_us)
     if (silent - hint_us >= hint_period_us) {
         hint_us = silent;
         if (!options.quiet)
-            (void)std::fprintf(stderr, "grrl-sim: waiting for an agent on the same LCM provider: "
-                                       "start grrl-agent\n");
+            (void)std::fprintf(stderr,
+                               "grrl-sim: waiting for an agent on the same LCM provider: "
+                               "start grrl-agent%s\n",
+                               options.camera ? ", and grrl-track --lcm, which sees for it" : "");
     }
     return true;
 }
@@ -192,6 +194,20 @@ bool loop(Node &node, lcm_t *lcm, const Options &options, const Results &results
     return true;
 }
 
+/* The table is then what the camera sees of it. */
+bool add_camera(const Options &options, NodeConfig &config)
+{
+    config.camera = make_camera(options.look, PictureCoding::JPEG);
+    config.world.table_m = camera_view_m(options.look);
+    std::string problem = check_world(config.world);
+    if (config.camera == nullptr)
+        problem = "this build cannot draw pictures: OpenCV was not there when it was configured; "
+                  "run tools/setup camera, then configure and build again";
+    if (!problem.empty())
+        (void)std::fprintf(stderr, "grrl-sim: --camera: %s\n", problem.c_str());
+    return problem.empty();
+}
+
 int run(const Options &options, ObjectSpec object, lcm_t *lcm)
 {
     Results results(options);
@@ -204,6 +220,8 @@ int run(const Options &options, ObjectSpec object, lcm_t *lcm)
         return 1;
     }
     NodeConfig config;
+    if (options.camera && !add_camera(options, config))
+        return 1;
     config.object = std::move(object);
     config.world.tracker = options.tracker;
     config.seed = options.seed;

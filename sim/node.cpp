@@ -172,6 +172,8 @@ void Node::begin_trial()
     status_ = {};
     world_ =
         std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
+    if (config_.camera != nullptr)
+        config_.camera->begin(*world_, trial_seed(config_.seed, trial_id_));
     phase_ = Phase::OFFER;
     trial_.judged_cmd_seq = -1;
     announce(GRRL_TRIAL_T_RUNNING, GRRL_TRIAL_T_NONE);
@@ -334,9 +336,31 @@ void Node::send_frame()
     points.trial_id = trial_id_;
     points.ack_cmd_seq = ack_cmd_seq_;
     points.agent_session_id = agent_session_id_;
+    if (config_.camera != nullptr)
+        return take_picture();
     world_->observe(frame_);
     points.n_points = copy_points(frame_, GRRL_WIRE_MAX_POINTS, points.id, points.x, points.y);
-    publish_points();
+    publish_frame();
+}
+
+/* What would have stood with the points stands with the picture. */
+void Node::take_picture()
+{
+    const grrl_points_t &points = points_.message;
+    config_.camera->take(*world_, picture_);
+    image_.session_id = points.session_id;
+    image_.seq = points.seq;
+    image_.trial_id = points.trial_id;
+    image_.ack_cmd_seq = points.ack_cmd_seq;
+    image_.agent_session_id = points.agent_session_id;
+    image_.mode = points.mode;
+    image_.phase = points.phase;
+    image_.width = picture_.width_px;
+    image_.height = picture_.height_px;
+    image_.encoding = GRRL_IMAGE_T_JPEG;
+    image_.n_bytes = static_cast<int32_t>(picture_.bytes.size());
+    image_.data = picture_.bytes.data();
+    publish_frame();
 }
 
 } // namespace grrl_sim

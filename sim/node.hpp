@@ -1,5 +1,6 @@
 /*
- * node.hpp: the simulated world on LCM: tracker, robot and supervisor in one, driven by events.
+ * node.hpp: the simulated world on LCM: tracker or camera, robot and supervisor in one, driven by
+ * events.
  *
  * The node subscribes and publishes on the caller's lcm_t and asks the caller for the time; it
  * never waits. Call lcm_handle and tick alternately, tick at least every 10 ms, until finished.
@@ -16,6 +17,7 @@
 
 #include <lcm/lcm.h>
 
+#include "camera.hpp"
 #include "supervisor.hpp"
 #include "wire.h"
 #include "world.hpp"
@@ -37,6 +39,9 @@ struct NodeConfig {
     int cap = 100;  /* most pushes in a trial */
     bool real_time = false;
     int64_t session_id = 1; /* random, above 0, different in each run */
+
+    /* In place of the world's own tracker: pictures go out, and grrl-track makes points of them. */
+    std::shared_ptr<Camera> camera;
 
     std::function<int64_t()> now_us; /* required; the others may be empty */
     std::function<void(const TrialResult &)> on_trial;
@@ -106,10 +111,13 @@ private:
     void repeat_settling();
     int8_t advance_world();
     void send_frame();
+    void take_picture();
     void set_push_state(int8_t state, int8_t reason);
 
-    void publish(const char *channel, int size, const grrl_wire_why &why);
+    void publish(const char *channel, const uint8_t *bytes, int size, const grrl_wire_why &why);
     void publish_trial();
+    void publish_frame();
+    void publish_picture();
     void publish_points();
     void publish_push_status();
     void tick_lock_step(int64_t now);
@@ -134,12 +142,15 @@ private:
 
     grrl_trial_t trial_{};
     grrl_wire_points points_{};
+    grrl_image_t image_{}; /* its data is picture_'s */
+    Picture picture_;
     grrl_push_status_t status_{};
     grrl_wire_model model_{};
     grrl_push_command_t command_{}; /* the next push, once received */
     grrl_decision_t decision_{};    /* the latest decision */
     Frame frame_;
     uint8_t bytes_[GRRL_WIRE_MAX_BYTES];
+    std::vector<uint8_t> image_bytes_;
 
     int64_t agent_session_id_ = 0;
     int64_t agent_heard_us_ = 0;

@@ -21,15 +21,15 @@ void Node::note(const std::string &text) const
         config_.on_note(text);
 }
 
-void Node::publish(const char *channel, int size, const grrl_wire_why &why)
+void Node::publish(const char *channel, const uint8_t *bytes, int size, const grrl_wire_why &why)
 {
     if (size < 0) {
         note(why.text);
         return;
     }
     if (config_.on_message)
-        config_.on_message(channel, bytes_, static_cast<uint32_t>(size));
-    if (lcm_publish(lcm_, channel, bytes_, static_cast<unsigned>(size)) != 0)
+        config_.on_message(channel, bytes, static_cast<uint32_t>(size));
+    if (lcm_publish(lcm_, channel, bytes, static_cast<unsigned>(size)) != 0)
         note("LCM could not send a message");
     sent_us_ = config_.now_us();
 }
@@ -39,16 +39,36 @@ void Node::publish_trial()
     grrl_wire_why why;
     trial_.utime = config_.now_us();
     trial_us_ = trial_.utime;
-    publish(GRRL_CHANNEL_TRIAL, grrl_wire_encode_trial(&trial_, GRRL_WIRE_MAX_BYTES, bytes_, &why),
-            why);
+    publish(GRRL_CHANNEL_TRIAL, bytes_,
+            grrl_wire_encode_trial(&trial_, GRRL_WIRE_MAX_BYTES, bytes_, &why), why);
 }
 
 void Node::publish_points()
 {
     grrl_wire_why why;
     points_.message.utime = config_.now_us();
-    publish(GRRL_CHANNEL_POINTS,
+    publish(GRRL_CHANNEL_POINTS, bytes_,
             grrl_wire_encode_points(&points_.message, GRRL_WIRE_MAX_BYTES, bytes_, &why), why);
+}
+
+void Node::publish_picture()
+{
+    grrl_wire_why why;
+    image_.utime = config_.now_us();
+    image_bytes_.resize(GRRL_WIRE_MAX_IMAGE_BYTES);
+    publish(GRRL_CHANNEL_IMAGE, image_bytes_.data(),
+            grrl_wire_encode_image(&image_, GRRL_WIRE_MAX_IMAGE_BYTES, image_bytes_.data(), &why),
+            why);
+}
+
+/* Who sees a picture wants to know what in it is the tool. */
+void Node::publish_frame()
+{
+    if (config_.camera == nullptr)
+        return publish_points();
+    if (world_->finger_position())
+        publish_push_status();
+    publish_picture();
 }
 
 void Node::publish_push_status()
@@ -61,7 +81,7 @@ void Node::publish_push_status()
     Vec2 tool = world_->finger_position().value_or(Vec2{});
     status_.tool[0] = static_cast<float>(tool.x);
     status_.tool[1] = static_cast<float>(tool.y);
-    publish(GRRL_CHANNEL_PUSH_STATUS,
+    publish(GRRL_CHANNEL_PUSH_STATUS, bytes_,
             grrl_wire_encode_push_status(&status_, GRRL_WIRE_MAX_BYTES, bytes_, &why), why);
 }
 
@@ -71,7 +91,7 @@ void Node::tick_lock_step(int64_t now)
         return;
     publish_trial();
     if (frames_flow())
-        publish_points();
+        publish_frame();
 }
 
 void Node::tick_real_time(int64_t now)

@@ -7,6 +7,7 @@
 #include "grrl/structure/term.h"
 #include "kinematics.hpp"
 #include "object_file.hpp"
+#include "object_folder.hpp"
 
 namespace grrl_sim
 {
@@ -32,14 +33,19 @@ bool is_numbered(const std::string &name)
  * objects, not links. */
 Result<ObjectSpec> object_from_word(const std::string &text)
 {
+    std::string path = object_path(text);
+    if (!path.empty())
+        return object_from_file(path);
     Result<ObjectSpec> object = object_from_term(text);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
         object = Result<ObjectSpec>::bad("write a single link of this name as L(" + text + ")");
-    if (!object)
-        object.error =
-            "'" + text +
-            "' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: " +
-            object.error;
+    if (!object) {
+        std::string names = object_names();
+        object.error = "'" + text +
+                       "' is not a chain such as RPR, not a file such as scissors.grrl, " +
+                       (names.empty() ? "" : "not one of the objects " + names + ", ") +
+                       "and as a term: " + object.error;
+    }
     return object;
 }
 

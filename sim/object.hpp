@@ -92,7 +92,7 @@ Result<ObjectSpec> object_from_chain(const std::string &letters);
 /* Accepts any term that is a kinematic structure; errors carry line and column. */
 Result<ObjectSpec> object_from_term(const std::string &term);
 
-/* A chain, a term, or else the path of a file. */
+/* A chain, a term, the path of a file, or the name of an object that comes with grrl. */
 Result<ObjectSpec> object_from_text(const std::string &text);
 
 /*

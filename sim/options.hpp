@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "camera.hpp"
 #include "cli/options.h"
 #include "tracker.hpp"
 
@@ -17,6 +18,8 @@ struct Options {
     uint64_t seed = 1;
     int cap = 100;
     TrackerParams tracker;
+    bool camera = false; /* pictures instead of points, with this look */
+    CameraLook look;
     bool real_time = false;
     bool quiet = false;
     double agent_timeout_s = 0.0; /* 0: wait forever */

@@ -13,6 +13,7 @@
 #include "objects.hpp"
 #include "options.hpp"
 #include "progress.hpp"
+#include "recordings/study.hpp"
 
 using namespace grrl_experiment::perception;
 using grrl_experiment::Progress;
@@ -105,6 +106,8 @@ int report(const Options &options, std::vector<Group> groups)
 
 int main(int argc, char **argv)
 {
+    if (argc > 1 && std::strcmp(argv[1], "recordings") == 0)
+        return grrl_experiment::recordings::study(argc, argv);
     Options options;
     grrl_options_result parsed = parse_options(argc, argv, options);
     if (parsed != GRRL_OPTIONS_RUN)

@@ -61,18 +61,19 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                               "Exit status: 0 fine; 1 trouble; 2 wrong command line.\n";
     const grrl_program program = {
         "grrl-evaluate",
-        "grrl-evaluate perception [OPTION]...",
+        "grrl-evaluate perception [OPTION]...\n       grrl-evaluate recordings --help",
         "Measures perception on simulated objects under random pushes, against the\n"
         "truth and against the baseline of the paper, in one run.\n",
         outro.c_str(),
         1,
-        "there is one study: perception",
+        "there are two studies: perception and recordings",
     };
     int first = 0;
     grrl_options_result result =
         grrl_options_parse(&program, rows, std::size(rows), argc, argv, &first);
     if (result == GRRL_OPTIONS_RUN && (first == argc || std::string(argv[first]) != "perception"))
-        return grrl_options_wrong(&program, "what is to be measured? There is: perception");
+        return grrl_options_wrong(&program,
+                                  "what is to be measured? There are: perception, recordings");
     return result;
 }
 

@@ -36,6 +36,19 @@ refused 2 "$AGENT" --store
 refused 2 "$AGENT" --quiet --explain
 refused 2 "$AGENT" --tracker-timeout 0
 refused 2 "$AGENT" --tracker-timeout soon
+refused 2 "$AGENT" --table 0,0,1
+refused 2 "$AGENT" --table 0,0,1,1,2
+refused 2 "$AGENT" --table 0,0,0,1
+refused 2 "$AGENT" --table 0,0,nan,1
+grep -q 'X0,Y0,X1,Y1 in metres, X0 below X1' err.txt || fail "--table: $(cat err.txt)"
+refused 2 "$AGENT" --force 0
+refused 2 "$AGENT" --force 101
+refused 2 "$AGENT" --speed 0.6
+refused 2 "$AGENT" --travel 0.03
+refused 2 "$AGENT" --until-sure 1
+refused 2 "$AGENT" --pushes 0
+refused 2 "$AGENT" --observe --pushes 3
+grep -q -e '--observe pushes nothing' err.txt || fail "--observe --pushes: $(cat err.txt)"
 refused 2 "$AGENT" extra
 refused 2 "$SIM"
 refused 2 "$SIM" --object RR --object RRR

@@ -114,6 +114,7 @@ static void write_messages(void)
     const grrl_decision_t decision = {
         .session_id = 1, .trial_id = 1, .cmd_seq = 1, .source_index = -1, .phi = 0.5f};
     const grrl_agent_status_t agent_status = {.session_id = 1, .received = 5};
+    const grrl_stop_t stop = {.session_id = 2, .reason = GRRL_STOP_T_FAULT};
     enum { ALL = GRRL_WIRE_MAX_BYTES };
     fill_model();
     place(0.3f);
@@ -125,6 +126,15 @@ static void write_messages(void)
     write_message(5, "decision", grrl_wire_encode_decision(&decision, ALL, bytes, &why));
     write_message(6, "agent_status",
                   grrl_wire_encode_agent_status(&agent_status, ALL, bytes, &why));
+    uint8_t pixels[16 * 16] = {1, 2, 3};
+    const grrl_image_t image = {.session_id = 2,
+                                .seq = 1,
+                                .width = 16,
+                                .height = 16,
+                                .n_bytes = sizeof pixels,
+                                .data = pixels};
+    write_message(7, "image", grrl_wire_encode_image(&image, ALL, bytes, &why));
+    write_message(8, "stop", grrl_wire_encode_stop(&stop, ALL, bytes, &why));
 }
 
 /* --- logs ------------------------------------------------------------------------------------- */

@@ -49,7 +49,7 @@ expect 0 'profile tracker, noise 1.5 px' --unit px --profile tracker --noise 1.5
 SAMPLES=$(dirname "$0")/../../examples
 expect 0 'pivot (40.1, -19.69) +- (0.62, 0.62) mm, seen from 0 to 40.1 degrees' \
     --unit mm "$SAMPLES/hinge.csv"
-expect 0 '^revolute 1.000' --handle "$SAMPLES/door.txt"
+expect 0 '^revolute 0.99' --handle "$SAMPLES/door.txt"
 expect 0 'all points lie within 1[.].* mm.*is the unit right?' --unit mm "$WORK/hinge.csv"
 
 # the order of rows means nothing, standard input is a file
@@ -159,10 +159,18 @@ expect 1 'auto: the points do not scatter' --noise auto "$WORK/rounded.csv"
 # a handle
 awk 'BEGIN { for (i = 0; i < 80; i++) print 0.4 * cos(i / 50), 0.4 * sin(i / 50), 1.0 }' >"$WORK/door"
 awk 'BEGIN { for (i = 0; i < 80; i++) print 20 * i, 12 * i }' >"$WORK/drawer"
-expect 0 '^revolute 1.000' --handle "$WORK/door"
+expect 0 '^revolute 0.99' --handle "$WORK/door"
 expect 0 '"radius": 0.4' --handle "$WORK/door" --json
 expect 0 '^prismatic [01]' --handle "$WORK/drawer" --unit mm
 expect 1 'is the unit right' --handle "$WORK/drawer" --unit m
+expect 0 '"type": "prismatic"' --handle "$WORK/drawer" --unit mm --json
+awk 'BEGIN { for (i = 0; i < 80; i++) print i / 200, 0.06 * sin(i / 12) }' >"$WORK/wave"
+expect 0 '^neither 0.99' --handle "$WORK/wave"
+awk 'BEGIN { for (i = 0; i < 80; i++) print 0.4, 0.3 }' >"$WORK/still"
+expect 0 '^rigid 1.000' --handle "$WORK/still"
+expect 0 '"p_rigid": 1,' --handle "$WORK/still" --json
+awk 'BEGIN { for (i = 0; i < 80; i++) print 0.5 * cos(i / 600), 0.5 * sin(i / 600) }' >"$WORK/ajar"
+expect 0 '^undetermined 0' --handle "$WORK/ajar"
 
 awk '{ print $1, $2, $3, 0, 0, 0, 1 }' "$WORK/door" >"$WORK/poses"
 "$PERCEIVE" --handle "$WORK/poses" | cmp - <("$PERCEIVE" --handle "$WORK/door") || wrong "the poses"

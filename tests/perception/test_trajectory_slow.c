@@ -209,48 +209,78 @@ static double residual_of(const struct bow *bow)
     return sqrt(sum / weights);
 }
 
-/* The variance of the curvature per sample's variance, by numeric derivatives of all distances. */
-static double variance_of_bend(const struct bow *bow)
+/* The power of half waves over the trajectory: the slowest third of at most 24, beyond the mean of
+ * the others, and that mean. */
+static void slow_powers(const double *value, double *total, double *slow, double *noise)
 {
-    double h[3][3] = {{0.0}};
-    for (int i = 0; i < n_kept; i++) {
-        double derivative[3];
-        double r = miss(bow, flat[i]);
-        double weight = 1.0 / (1.0 + pow(r / (3.0 * (double)config.noise_m), 2.0));
-        for (int k = 0; k < 3; k++) {
-            struct bow more = *bow;
-            struct bow less = *bow;
-            double d = 1e-5;
-            *(k == 0 ? &more.bend : k == 1 ? &more.angle : &more.away) += d;
-            *(k == 0 ? &less.bend : k == 1 ? &less.angle : &less.away) -= d;
-            derivative[k] = (miss(&more, flat[i]) - miss(&less, flat[i])) / (2.0 * d);
-        }
-        for (int a = 0; a < 9; a++)
-            h[a / 3][a % 3] += weight * derivative[a / 3] * derivative[a % 3];
+    int waves = (n_kept - 1) / 3 < 8 ? (n_kept - 1) / 3 : 8;
+    *total = 0.0;
+    *slow = 0.0;
+    *noise = 0.0;
+    for (int i = 0; i < n_kept; i++)
+        *total += value[i] * value[i] / n_kept;
+    for (int k = 1; k <= 3 * waves && n_kept >= 12; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < n_kept; i++)
+            sum += 2.0 * value[i] * cos(3.14159265358979 * k * (i + 0.5) / n_kept) / n_kept;
+        *(k <= waves ? slow : noise) += 0.5 * sum * sum / (k <= waves ? 1.0 : 2.0 * waves);
     }
-    double minor = h[1][1] * h[2][2] - h[1][2] * h[1][2];
-    double det = h[0][0] * minor - h[0][1] * (h[0][1] * h[2][2] - h[1][2] * h[0][2]) +
-                 h[0][2] * (h[0][1] * h[1][2] - h[1][1] * h[0][2]);
-    return minor / det;
+    *slow = n_kept < 12 ? *total : fmax(0.0, *slow - waves * *noise);
+    double least = n_kept < 12 ? *total / fmax(1.0, n_kept - 3.0) : (*total - *slow) / n_kept;
+    *noise = fmax(*noise, least);
 }
 
-/* The circle against the line: what the loss tells, and how usual the curvature is. */
-static double slow_log_odds(const struct bow *line, const struct bow *circle)
+static double student(double x, double degrees)
 {
-    double effective = fmin(n_kept, (double)config.effective_samples);
-    double sd = (double)config.noise_m * sqrt(variance_of_bend(circle) * n_kept / effective);
-    double prior = 0.0;
+    double scale = tgamma(0.5 * (degrees + 1.0)) / tgamma(0.5 * degrees);
+    return scale / sqrt(3.14159265358979 * degrees) *
+           pow(1.0 + x * x / degrees, -0.5 * (degrees + 1.0));
+}
+
+static double log_normal(double x, double median, double spread)
+{
+    double z = log(x / median) / spread;
+    return x > 0.0 ? exp(-0.5 * z * z) / (x * spread * sqrt(6.28318530717959)) : 0.0;
+}
+
+/* Of the turn seen, for a circle of some radius: over turns within eight scales, finely. */
+static double slow_circle_density(double turn, double length, double sigma)
+{
     double sum = 0.0;
-    for (int i = -64; i <= 64; i++) {
-        double z = 3.0 * i / 64.0;
-        double bend = exp(0.7 * z) / (double)config.radius_m;
-        double density = exp(-0.5 * z * z);
-        double left = (bend - circle->bend) / sd;
-        double right = (bend + circle->bend) / sd;
-        prior += density;
-        sum += 0.5 * density * (exp(-0.5 * left * left) + exp(-0.5 * right * right));
+    double weights = 0.0;
+    for (int i = -4000; i <= 4000; i++) {
+        double weight = student(i / 500.0, 4.0);
+        double at = fabs(turn + sigma * i / 500.0);
+        weights += weight;
+        sum += 0.5 * weight * log_normal(at, length / (double)config.radius_m, 1.2);
     }
-    return 0.5 * effective * (loss_of(line) - loss_of(circle)) + log(sum / prior);
+    return sum / weights;
+}
+
+/* rigid, neither, revolute, prismatic. */
+static void slow_probabilities(const struct bow *circle, double turn, double length, double *p)
+{
+    double miss_of[MOST];
+    double along[MOST];
+    double most = 3.0 * residual_of(circle);
+    for (int i = 0; i < n_kept; i++) {
+        miss_of[i] = fmin(most, fmax(-most, miss(circle, flat[i])));
+        along[i] = flat[i].x;
+    }
+    double total, slow, noise, moved;
+    slow_powers(along, &total, &moved, &noise);
+    slow_powers(miss_of, &total, &slow, &noise);
+    double sigma = hypot((double)config.play_rad, sqrt(slow + noise) * 12.0 * sqrt(5.0) / length);
+    double line = student(turn / sigma, 4.0) / sigma;
+    double circular = slow_circle_density(turn, length, sigma);
+    double joint = 2.0 * student(sqrt(slow) / length / 0.006, 8.0) / 0.006;
+    double other = log_normal(sqrt(slow) / length, 0.03, 0.7);
+    double still = 2.0 * student(sqrt(moved) / 0.0003, 4.0) / 0.0003;
+    double moving = log_normal(sqrt(moved), 0.09, 1.2);
+    p[0] = 0.1 * still / (0.1 * still + 0.9 * moving);
+    p[1] = (1.0 - p[0]) * 0.1 * other / (0.1 * other + 0.9 * joint);
+    p[2] = (1.0 - p[0] - p[1]) * circular / (circular + line);
+    p[3] = 1.0 - p[0] - p[1] - p[2];
 }
 
 static struct point centre_of(const struct bow *circle)
@@ -371,8 +401,8 @@ static bool check_fit(void)
     double normal[3];
     assert_int_equal(fit.outliers, (int)trajectory.n - n_kept);
     assert_near(1e3 * (double)fit.out_of_plane_m, 1e3 * out_of_plane, 0.02);
-    assert_near(fit.revolute.probability + fit.prismatic.probability, 1.0, 1e-5);
-    assert_int_equal(fit.type, fit.revolute.probability > 0.5f ? GRRL_REVOLUTE : GRRL_PRISMATIC);
+    assert_near(fit.revolute.probability + fit.prismatic.probability + fit.p_rigid + fit.p_neither,
+                1.0, 1e-5);
     for (int k = 0; k < 3; k++)
         normal[k] =
             axis_u[(k + 1) % 3] * axis_v[(k + 2) % 3] - axis_u[(k + 2) % 3] * axis_v[(k + 1) % 3];
@@ -392,9 +422,15 @@ static bool check_fit(void)
         assert_near(fit.revolute.point_m[k], at, 0.01 * fmax(1.0, radius));
     }
     assert_near(fabs(turned), 1.0, 1e-4);
-    double odds = slow_log_odds(&line, &circle);
-    if (straight)
-        assert_near(fit.revolute.probability, 1.0 / (1.0 + exp(-odds)), 0.02);
+    double p[4];
+    double turn = slow_turn(centre);
+    slow_probabilities(&circle, turn, fmax(turn * radius, slow_slide(&line)), p);
+    assert_near(fit.p_rigid, p[0], 0.02);
+    if (straight) {
+        assert_near(fit.p_neither, p[1], 0.02);
+        assert_near(fit.revolute.probability, p[2], 0.02);
+        assert_near(fit.prismatic.probability, p[3], 0.02);
+    }
     return true;
 }
 
@@ -407,7 +443,7 @@ static void arcs_as_by_searching(void **state)
         double noise = scene_uniform(0.0003, 0.003);
         grrl_trajectory_config_default(&config);
         config.noise_m = (float)(run % 4 < 2 ? scene_uniform(0.005, 0.02) : 3.0 * noise);
-        config.effective_samples = (float)scene_int(1, 50);
+        config.play_rad = (float)scene_uniform(0.02, 0.3);
         config.radius_m = (float)scene_uniform(0.2, 1.0);
         make_plane(run % 3 == 0 ? 2 : 3);
         make_arc(scene_int(20, MOST), scene_uniform(0.1, 0.8),

@@ -1,8 +1,8 @@
 /* Observers, and an agent with a tracker and a robot that know nothing of trials. */
 #include <algorithm>
 
-#include "grrl/base/settling.h"
 #include "harness.hpp"
+#include "own_plant.hpp"
 
 using namespace harness;
 
@@ -143,119 +143,24 @@ void judgements_may_come_late(void **)
         assert_learns_the_same(live, delayed(live.messages, GRRL_CHANNEL_TRIAL, n));
 }
 
-/* A tracker that knows no trials, no pushes and no phases, and a robot with its own session. */
-class OwnPlant
+void count(const lcm_recv_buf_t *, const char *, void *user)
 {
-public:
-    explicit OwnPlant(lcm_t *lcm)
-        : lcm_(lcm), world_(*object_from_text("RPR").value, WorldParams(), 5)
-    {
-        grrl_wire_bind_points(&points_);
-        subscription_ = lcm_subscribe(lcm_, GRRL_CHANNEL_PUSH_COMMAND, on_command, this);
-        (void)lcm_subscription_set_queue_capacity(subscription_, 0);
-    }
-    ~OwnPlant() { (void)lcm_unsubscribe(lcm_, subscription_); }
-
-    void frame()
-    {
-        clock_us += 33333;
-        bool was_moving = moving_;
-        moving_ = moving_ && world_.step_frame();
-        if (was_moving != moving_)
-            report(GRRL_PUSH_STATUS_T_DONE, GRRL_PUSH_STATUS_T_REACHED);
-        rest_frames_ = moving_ ? 0 : rest_frames_ + 1;
-        Frame frame;
-        world_.observe(frame);
-        grrl_points_t &m = points_.message;
-        m.utime = clock_us;
-        m.session_id = 77;
-        m.seq++;
-        m.n_points = 0;
-        for (const TrackedFeature &feature : frame.features) {
-            m.id[m.n_points] = static_cast<int32_t>(feature.id);
-            m.x[m.n_points] = static_cast<float>(feature.x_m);
-            m.y[m.n_points] = static_cast<float>(feature.y_m);
-            m.n_points++;
-        }
-        send(GRRL_CHANNEL_POINTS, grrl_wire_encode_points(&m, GRRL_WIRE_MAX_BYTES, bytes_, &why_));
-    }
-
-    int pushes() const { return pushes_; }
-
-    void obey_rival()
-    {
-        rival_ = true;
-        report(GRRL_PUSH_STATUS_T_MOVING, GRRL_PUSH_STATUS_T_NONE);
-    }
-
-private:
-    static void on_command(const lcm_recv_buf_t *buffer, const char *, void *user)
-    {
-        auto *plant = static_cast<OwnPlant *>(user);
-        grrl_push_command_t c;
-        assert_true(
-            grrl_wire_decode_push_command(buffer->data, buffer->data_size, &c, &plant->why_));
-        assert_int_equal(c.plant_session_id, 77);
-        if (c.kind != GRRL_PUSH_COMMAND_T_PUSH || c.cmd_seq <= plant->pushes_)
-            return;
-        assert_int_equal(c.cmd_seq, plant->pushes_ + 1);
-        plant->obey(c);
-    }
-
-    void obey(const grrl_push_command_t &c)
-    {
-        PushCommand push;
-        push.start_m = {static_cast<double>(c.start[0]), static_cast<double>(c.start[1])};
-        push.end_m = {static_cast<double>(c.end[0]), static_cast<double>(c.end[1])};
-        push.travel_m = static_cast<double>(c.travel);
-        pushes_++;
-        assert_true(rest_frames_ >= GRRL_SETTLING_FRAMES); /* enough to average */
-        rest_frames_ = 0;
-        moving_ = world_.begin_push(push).empty();
-        report(moving_ ? GRRL_PUSH_STATUS_T_MOVING : GRRL_PUSH_STATUS_T_REFUSED,
-               moving_ ? GRRL_PUSH_STATUS_T_NONE : GRRL_PUSH_STATUS_T_BAD_COMMAND);
-    }
-
-    void report(int8_t state, int8_t reason)
-    {
-        grrl_push_status_t status{};
-        status.utime = clock_us;
-        status.session_id = 78;
-        status.agent_session_id = rival_ ? agent_session + 1 : agent_session;
-        status.cmd_seq = pushes_;
-        status.state = state;
-        status.reason = reason;
-        send(GRRL_CHANNEL_PUSH_STATUS,
-             grrl_wire_encode_push_status(&status, GRRL_WIRE_MAX_BYTES, bytes_, &why_));
-    }
-
-    void send(const char *channel, int size)
-    {
-        assert_true(size > 0);
-        assert_int_equal(lcm_publish(lcm_, channel, bytes_, static_cast<unsigned>(size)), 0);
-    }
-
-    lcm_t *lcm_;
-    World world_;
-    lcm_subscription_t *subscription_;
-    grrl_wire_points points_{};
-    grrl_wire_why why_;
-    uint8_t bytes_[GRRL_WIRE_MAX_BYTES];
-    int pushes_ = 0;
-    int rest_frames_ = 0;
-    bool moving_ = false;
-    bool rival_ = false;
-};
+    ++*static_cast<int *>(user);
+}
 
 void a_tracker_and_a_robot_are_enough(void **)
 {
+    int models = 0;
     Listener listener(false);
-    OwnPlant plant(listener.lcm());
+    (void)lcm_subscribe(listener.lcm(), GRRL_CHANNEL_MODEL, count, &models);
+    OwnPlant plant(listener.lcm(), "RPR", 5);
     for (int i = 0; i < 5000 && plant.pushes() < 12; i++) {
-        plant.frame();
+        plant.frame(clock_us += 33333);
         listener.handle_all();
     }
     assert_int_equal(plant.pushes(), 12);
+    assert_true(plant.orderly());
+    assert_int_equal(models, 12); /* before each push */
     assert_true(grrl_learner_usage(&listener.agent().learner).n > 0);
     assert_int_equal(listener.agent().counts.lost, 0);
     /* it found joints, so the frames reached perception as frames of pushes */
@@ -266,19 +171,19 @@ void a_tracker_and_a_robot_are_enough(void **)
 void an_agent_gives_way_when_its_robot_moves_for_another(void **)
 {
     Listener listener(false);
-    OwnPlant plant(listener.lcm());
+    OwnPlant plant(listener.lcm(), "RPR", 5);
     for (int i = 0; i < 5000 && plant.pushes() < 2; i++) {
-        plant.frame();
+        plant.frame(clock_us += 33333);
         listener.handle_all();
     }
-    assert_false(grrl_agent_gave_way(&listener.agent()));
+    assert_int_equal(grrl_agent_end(&listener.agent()), GRRL_AGENT_GOES_ON);
     uint32_t cases = grrl_learner_usage(&listener.agent().learner).n;
     plant.obey_rival();
     for (int i = 0; i < 200; i++) {
-        plant.frame();
+        plant.frame(clock_us += 33333);
         listener.handle_all();
     }
-    assert_true(grrl_agent_gave_way(&listener.agent()));
+    assert_int_equal(grrl_agent_end(&listener.agent()), GRRL_AGENT_GAVE_WAY);
     assert_int_equal(plant.pushes(), 2);
     assert_int_equal(grrl_learner_usage(&listener.agent().learner).n, cases);
 }

@@ -30,6 +30,8 @@ static grrl_push_status_t push_status;
 static grrl_trial_t trial;
 static grrl_decision_t decision;
 static grrl_agent_status_t agent_status;
+static struct grrl_wire_image image;
+static grrl_stop_t stop;
 
 #define FACE(type, variable, message)                                                              \
     static bool decode_##type(const void *data, uint32_t size)                                     \
@@ -48,8 +50,10 @@ FACE(push_status, push_status, push_status)
 FACE(trial, trial, trial)
 FACE(decision, decision, decision)
 FACE(agent_status, agent_status, agent_status)
+FACE(image, image, image.message)
+FACE(stop, stop, stop)
 
-#define N_TYPES 7
+#define N_TYPES 9
 static struct subject subjects[N_TYPES] = {
     {"points", 0, {0}, decode_points, encode_points},
     {"model", 0, {0}, decode_model, encode_model},
@@ -58,6 +62,8 @@ static struct subject subjects[N_TYPES] = {
     {"trial", 0, {0}, decode_trial, encode_trial},
     {"decision", 0, {0}, decode_decision, encode_decision},
     {"agent_status", 0, {0}, decode_agent_status, encode_agent_status},
+    {"image", 0, {0}, decode_image, encode_image},
+    {"stop", 0, {0}, decode_stop, encode_stop},
 };
 
 static void fill_points(int n)
@@ -125,6 +131,27 @@ static void fill_small(void)
     decision = (grrl_decision_t){.session_id = 43, .trial_id = 1, .cmd_seq = 1, .source_index = -1};
     decision.phi = 0.5f;
     agent_status = (grrl_agent_status_t){.session_id = 43, .received = INT64_MAX};
+    stop = (grrl_stop_t){.session_id = 42, .reason = GRRL_STOP_T_LIMIT};
+}
+
+static void fill_image(int32_t width, int32_t height, int8_t encoding, int32_t n_bytes)
+{
+    grrl_wire_bind_image(&image);
+    grrl_image_t *m = &image.message;
+    m->utime = 1234567890123;
+    m->session_id = 42;
+    m->seq = 7;
+    m->trial_id = 3;
+    m->ack_cmd_seq = 2;
+    m->agent_session_id = 43;
+    m->mode = GRRL_POINTS_T_LOCK_STEP;
+    m->phase = GRRL_POINTS_T_REST;
+    m->width = width;
+    m->height = height;
+    m->encoding = encoding;
+    m->n_bytes = n_bytes;
+    for (int32_t i = 0; i < n_bytes && i < GRRL_WIRE_MAX_PICTURE; i++)
+        image.data[i] = (uint8_t)(i * 7);
 }
 
 static int setup(void **state)
@@ -133,6 +160,7 @@ static int setup(void **state)
     fill_points(3);
     fill_model(3, 2, 5);
     fill_small();
+    fill_image(17, 19, GRRL_IMAGE_T_RAW_GREY, 17 * 19);
     for (size_t i = 0; i < N_TYPES; i++) {
         struct subject *s = &subjects[i];
         s->size = s->encode(GRRL_WIRE_MAX_BYTES, s->bytes);
@@ -229,7 +257,7 @@ static void forged_counts_are_refused(void **state)
                                0x40000000, 0x7fffffff, 0x80000000, 0xffffffff, 2};
     const struct {
         int subject, at;
-    } counts[] = {{0, 50}, {1, 32}, {1, 36}, {1, 40}};
+    } counts[] = {{0, 50}, {1, 32}, {1, 36}, {1, 40}, {7, 59}};
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++)
         for (size_t v = 0; v < sizeof forged / sizeof forged[0]; v++) {
             struct subject s = subjects[counts[c].subject];
@@ -324,6 +352,43 @@ static void the_largest_messages_fit(void **state)
     assert_int_equal(encode_points(GRRL_WIRE_MAX_BYTES, bytes), -1);
 }
 
+static void the_largest_picture_fits(void **state)
+{
+    (void)state;
+    static uint8_t bytes[GRRL_WIRE_MAX_IMAGE_BYTES];
+    struct subject s = subjects[7];
+    fill_image(4096, 1024, GRRL_IMAGE_T_RAW_GREY, GRRL_WIRE_MAX_PICTURE);
+    int size = encode_image(GRRL_WIRE_MAX_IMAGE_BYTES, bytes);
+    assert_true(size > GRRL_WIRE_MAX_PICTURE);
+    memset(image.data, 0, sizeof image.data);
+    assert_true(decode_exact(&s, bytes, size));
+    for (int32_t i = 0; i < GRRL_WIRE_MAX_PICTURE; i += 4097)
+        assert_int_equal(image.data[i], (uint8_t)(i * 7));
+    assert_int_equal(encode_image(size - 1, bytes), -1);
+    fill_image(640, 480, GRRL_IMAGE_T_JPEG, GRRL_WIRE_MAX_PICTURE + 1);
+    assert_int_equal(encode_image(GRRL_WIRE_MAX_IMAGE_BYTES, bytes), -1);
+}
+
+/* A picture without coding that is not width times height would be read beyond its end. */
+static void a_picture_of_another_size_is_refused(void **state)
+{
+    (void)state;
+    uint8_t bytes[GRRL_WIRE_MAX_BYTES];
+    struct subject s = subjects[7];
+    fill_image(17, 20, GRRL_IMAGE_T_RAW_GREY, 17 * 19);
+    assert_int_equal(encode_image(GRRL_WIRE_MAX_BYTES, bytes), -1);
+    assert_non_null(strstr(why.text, "340"));
+    fill_image(17, 19, GRRL_IMAGE_T_RAW_BGR, 17 * 19);
+    assert_int_equal(encode_image(GRRL_WIRE_MAX_BYTES, bytes), -1);
+    fill_image(17, 19, GRRL_IMAGE_T_JPEG, 100); /* coded, it may have any */
+    assert_true(encode_image(GRRL_WIRE_MAX_BYTES, bytes) > 0);
+    enum { HEIGHT_AT = 8 + 3 * 8 + 2 * 4 + 8 + 2 + 4 };
+    put32(s.bytes + HEIGHT_AT, 20); /* on the receiver's side */
+    assert_false(decode_exact(&s, s.bytes, s.size));
+    put32(s.bytes + HEIGHT_AT, 0x7fffffff);
+    assert_false(decode_exact(&s, s.bytes, s.size));
+}
+
 static void floats_pass_bit_for_bit(void **state)
 {
     (void)state;
@@ -366,6 +431,8 @@ int main(void)
         cmocka_unit_test_setup(what_is_accepted_encodes_to_the_same_bytes, setup),
         cmocka_unit_test_setup(links_that_do_not_exist_are_refused, setup),
         cmocka_unit_test_setup(the_largest_messages_fit, setup),
+        cmocka_unit_test_setup(the_largest_picture_fits, setup),
+        cmocka_unit_test_setup(a_picture_of_another_size_is_refused, setup),
         cmocka_unit_test_setup(floats_pass_bit_for_bit, setup),
         cmocka_unit_test_setup(damaged_messages_do_no_harm, setup),
     };

@@ -8,17 +8,18 @@
 #include <string.h>
 
 #include "grrl/base/geometry.h"
+#include "perception/trajectory_evidence.h"
 
 /* Coordinates beyond this are refused, and no radius is said to be larger: squares of both stay far
  * from the limits of a float. */
 #define FARTHEST_M 1000.0f
 
+/* Positions that scatter by less are one place: a float has no more digits of a metre. */
+#define STILL_M 1e-6f
+
 /* A sample this far from the running median is an outlier: noise alone is some 4 times in 10^6.
  */
 #define OUTLIER_SIGMAS 5.0f
-
-/* Standard deviation of the logarithm of a radius about the usual one: ln 2, a factor of two. */
-#define RADIUS_SPREAD 0.7f
 
 /* Where a residual counts half (Cauchy's loss): noise is there once in 370 samples, so that a fit
  * loses little by it. */
@@ -37,14 +38,12 @@
 #define CONVERGED 1e-5f
 
 #define LEAST_PIVOT 1e-12f /* added to the diagonal, so that nothing is divided by zero */
-#define PRIOR_SPREADS 3.0f /* of the prior of the radius, integrated over: 99.7% of it */
 
 enum {
     WINDOW = 2,     /* samples before and after in the running median: two outliers are outvoted */
     MAX_STEPS = 25, /* of the fit; it converges in some ten */
     MAX_DAMPINGS = 8, /* tried in a step: up to 10^8 times the first */
-    SWEEPS = 8,       /* of Jacobi's method, which converges quadratically: four would do */
-    RADII = 64        /* steps of the integral over the radius, to either side of the usual one */
+    SWEEPS = 8        /* of Jacobi's method, which converges quadratically: four would do */
 };
 
 /* A trajectory seen in its plane: u and v are its two main axes, w is across. */
@@ -81,7 +80,7 @@ struct normal {
 void grrl_trajectory_config_default(struct grrl_trajectory_config *config)
 {
     *config = (struct grrl_trajectory_config){
-        .noise_m = 0.01f, .effective_samples = 5.0f, .radius_m = 0.5f};
+        .noise_m = 0.01f, .radius_m = 0.3f, .play_rad = 0.09f, .decided = 2.0f / 3.0f};
 }
 
 /* --- samples ---------------------------------------------------------------------------------- */
@@ -216,7 +215,7 @@ static uint32_t find_origin(struct view *view)
     return n;
 }
 
-/* Origin and axes of the samples kept; false: too few of them, or all in one place. */
+/* Origin and axes of the samples kept; false: they are all in one place, but for rounding. */
 static bool find_plane(struct view *view, struct grrl_trajectory_fit *fit)
 {
     float spread[3][3] = {{0.0f}};
@@ -231,7 +230,7 @@ static bool find_plane(struct view *view, struct grrl_trajectory_fit *fit)
                 spread[k / 3][k % 3] += offset[k / 3] * offset[k % 3];
         }
     }
-    if (n < GRRL_TRAJECTORY_MIN_SAMPLES || !(spread[0][0] + spread[1][1] + spread[2][2] > 0.0f))
+    if (!(spread[0][0] + spread[1][1] + spread[2][2] > STILL_M * STILL_M * (float)n))
         return false;
     memcpy(turned, spread, sizeof turned);
     main_axes(turned, view);
@@ -435,35 +434,30 @@ static void describe_circle(const struct view *view, const struct curve *circle,
     fit->revolute.travel = angle_travelled(view, centre);
 }
 
-/*
- * The logarithm of the marginal likelihood of the circle over that of the line. The likelihood of
- * the curvature is a Gaussian about its estimate; it is weighted with a prior, log-normal about the
- * usual radius and the same to either side. Where the circle is and where it points to costs the
- * line as much and cancels.
- */
-static float log_evidence_for_circle(const struct grrl_trajectory_config *config, uint32_t n,
-                                     const struct normal *line, const struct curve *circle,
-                                     const struct normal *circle_normal)
+/* Of a curve, so that a few outliers left make no difference. */
+static struct grrl_trajectory_residuals residuals_of(const struct view *view, uint32_t n,
+                                                     const struct curve *curve, float rms_m)
 {
-    float effective = (float)n < config->effective_samples ? (float)n : config->effective_samples;
-    struct normal unit = *circle_normal;
-    float x[3];
-    unit.g[0] = 1.0f;
-    unit.g[1] = unit.g[2] = 0.0f;
-    solve_damped(&unit, 0.0f, 0, x);
-    float sd = 2.0f * config->noise_m * grrl_sqrt(x[0] * (float)n / effective);
-    float prior = 0.0f;
-    float sum = 0.0f;
-    for (int i = -RADII; i <= RADII; i++) {
-        float deviation = PRIOR_SPREADS * (float)i / (float)RADII; /* in spreads of the logarithm */
-        float density = grrl_exp(-0.5f * deviation * deviation);
-        float curvature = grrl_exp(RADIUS_SPREAD * deviation) / config->radius_m;
-        float left = (curvature - 2.0f * circle->a) / sd;
-        float right = (curvature + 2.0f * circle->a) / sd;
-        prior += density;
-        sum += 0.5f * density * (grrl_exp(-0.5f * left * left) + grrl_exp(-0.5f * right * right));
+    struct grrl_trajectory_spectrum spectrum;
+    grrl_trajectory_spectrum_begin(&spectrum, n);
+    for (uint32_t i = 0; i < view->trajectory->n; i++) {
+        if (is_kept(view, i)) {
+            float r = distance(curve, project(view, i), NULL);
+            float most = CAUCHY_SIGMAS * rms_m;
+            grrl_trajectory_spectrum_add(&spectrum, r > most ? most : r < -most ? -most : r);
+        }
     }
-    return 0.5f * effective * (line->loss - circle_normal->loss) + grrl_log(sum / prior);
+    return grrl_trajectory_spectrum_end(&spectrum);
+}
+
+static struct grrl_trajectory_residuals places_of(const struct view *view, uint32_t n)
+{
+    struct grrl_trajectory_spectrum spectrum;
+    grrl_trajectory_spectrum_begin(&spectrum, n);
+    for (uint32_t i = 0; i < view->trajectory->n; i++)
+        if (is_kept(view, i))
+            grrl_trajectory_spectrum_add(&spectrum, project(view, i).x);
+    return grrl_trajectory_spectrum_end(&spectrum);
 }
 
 static void fit_models(const struct view *view, const struct grrl_trajectory_config *config,
@@ -484,15 +478,18 @@ static void fit_models(const struct view *view, const struct grrl_trajectory_con
             circle_normal = other_normal;
         }
     }
-    float log_odds = log_evidence_for_circle(config, view->trajectory->n - fit->outliers,
-                                             &line_normal, &circle, &circle_normal);
-    fit->type = log_odds > 0.0f ? GRRL_REVOLUTE : GRRL_PRISMATIC;
-    fit->revolute.probability = 1.0f / (1.0f + grrl_exp(-log_odds));
-    fit->prismatic.probability = 1.0f - fit->revolute.probability;
     fit->prismatic.residual_m = grrl_sqrt(line_normal.residual2 / line_normal.weight);
     fit->revolute.residual_m = grrl_sqrt(circle_normal.residual2 / circle_normal.weight);
     describe_line(view, &line, &fit->prismatic);
     describe_circle(view, &circle, fit);
+    uint32_t n = view->trajectory->n - fit->outliers;
+    float arc_m = fit->radius_m * fit->revolute.travel;
+    struct grrl_trajectory_clues clues = {
+        .residuals = residuals_of(view, n, &circle, fit->revolute.residual_m),
+        .places = places_of(view, n),
+        .length_m = arc_m > fit->prismatic.travel ? arc_m : fit->prismatic.travel,
+        .turn_rad = fit->revolute.travel};
+    grrl_trajectory_weigh(config, &clues, fit);
 }
 
 enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory,
@@ -501,8 +498,9 @@ enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory
 {
     if (trajectory->dimensions < 2 || trajectory->dimensions > 3 ||
         !grrl_is_finite(config->noise_m) || !(config->noise_m > 0.0f) ||
-        !grrl_is_finite(config->effective_samples) || !(config->effective_samples >= 1.0f) ||
-        !grrl_is_finite(config->radius_m) || !(config->radius_m > 0.0f))
+        !grrl_is_finite(config->radius_m) || !(config->radius_m > 0.0f) ||
+        !grrl_is_finite(config->play_rad) || !(config->play_rad > 0.0f) ||
+        !(config->decided >= 0.5f && config->decided <= 1.0f))
         return GRRL_ERR_ARGUMENT;
     if (trajectory->n < GRRL_TRAJECTORY_MIN_SAMPLES)
         return GRRL_ERR_NONE;
@@ -512,10 +510,12 @@ enum grrl_status grrl_trajectory_fit_of(const struct grrl_trajectory *trajectory
     struct view view = {.trajectory = trajectory,
                         .outlier_m = OUTLIER_SIGMAS * config->noise_m,
                         .noise_m = config->noise_m};
-    struct grrl_trajectory_fit result = {.radius_m = 0.0f};
-    if (!find_plane(&view, &result))
+    struct grrl_trajectory_fit result = {.answer = GRRL_TRAJECTORY_RIGID, .p_rigid = 1.0f};
+    bool moved = find_plane(&view, &result);
+    if (trajectory->n - result.outliers < GRRL_TRAJECTORY_MIN_SAMPLES)
         return GRRL_ERR_NONE;
-    fit_models(&view, config, &result);
+    if (moved)
+        fit_models(&view, config, &result);
     *fit = result;
     return GRRL_OK;
 }

@@ -1,0 +1,28 @@
+# Finds the few modules of OpenCV that pictures need. Debian keeps OpenCV's own CMake package in
+# libopencv-dev, which depends on everything there is; so header and libraries are looked for.
+# Sets GRRL_OPENCV_FOUND and the target grrl_opencv; GRRL_WITHOUT_OPENCV leaves them out.
+option(GRRL_WITHOUT_OPENCV "Build without pictures, even where OpenCV is" OFF)
+find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4)
+set(GRRL_OPENCV_FOUND OFF)
+set(opencv_missing "")
+set(opencv_libraries "")
+foreach(module videoio imgcodecs calib3d video imgproc core)
+    find_library(OPENCV_${module}_LIBRARY opencv_${module})
+    if(OPENCV_${module}_LIBRARY AND EXISTS ${OPENCV_INCLUDE_DIR}/opencv2/${module}.hpp)
+        list(APPEND opencv_libraries ${OPENCV_${module}_LIBRARY})
+    else()
+        list(APPEND opencv_missing libopencv-${module}-dev)
+    endif()
+endforeach()
+if(GRRL_WITHOUT_OPENCV)
+    message(STATUS "GRRL_WITHOUT_OPENCV: no grrl-track, no grrl-sim --camera")
+elseif(opencv_missing)
+    list(JOIN opencv_missing " " opencv_missing)
+    message(STATUS "No OpenCV (${opencv_missing}): no grrl-track, no grrl-sim --camera, and their "
+        "tests are skipped; tools/setup camera installs it")
+else()
+    set(GRRL_OPENCV_FOUND ON)
+    add_library(grrl_opencv INTERFACE)
+    target_include_directories(grrl_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
+    target_link_libraries(grrl_opencv INTERFACE ${opencv_libraries})
+endif()

@@ -1,0 +1,93 @@
+/*
+ * scene.hpp: what moves in a synthetic recording, and how: links, joints, independent bodies.
+ *
+ * Body 0 is the ground. A scene is a function of the time from 0 to 1, whatever a camera makes of
+ * it. Links that no joint ties never look as if one did: a draw in which a single pivot or a single
+ * axis explains their relative motion is drawn again (but for a body that crosses straight, a thing
+ * that comes nearer, and a hand on a lever, which are there because they come close to it).
+ */
+#ifndef GRRL_EXPERIMENT_RECORDINGS_SCENE_HPP
+#define GRRL_EXPERIMENT_RECORDINGS_SCENE_HPP
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "geometry.hpp"
+#include "grrl/base/joint_type.h"
+
+namespace grrl_experiment::recordings
+{
+
+/* The part of the table that is seen, in links; a scene stays within it. */
+constexpr double table_links[2] = {3.4, 1.9};
+
+enum class Object { R, P, RR, RP, DOOR, DRAWER, TWO, THREE, FOUR, CROSSING, NEARER, HAND };
+
+/* What the figures of an object count to. */
+enum class Kind { MECHANISM, INDEPENDENT, HAND };
+
+struct NamedObject {
+    Object object;
+    Kind kind;
+    const char *name;
+    const char *what;
+};
+const std::vector<NamedObject> &all_objects();
+
+/* From 0 at its begin to its size at its end, smoothly. */
+struct Ramp {
+    double begin = 0.0;
+    double end = 1.0;
+    double size = 0.0;
+    double at(double t) const;
+};
+
+/* Two sines; 0 at the beginning. */
+struct Wave {
+    double size[2] = {0.0, 0.0};
+    double phase[2] = {0.0, 0.0};
+    double cycles[2] = {1.0, 1.0};
+    double at(double t) const;
+};
+
+/* A rectangle and its motion. Its place without a joint: start, moved by waves and ramps. */
+struct Body {
+    double half_length_m = 0.0;
+    double half_width_m = 0.0;
+    grrl_sim::Pose start;
+    Wave x_m, y_m, turn_rad;
+    Ramp cross_x_m, cross_y_m;
+    Ramp growth;          /* of its picture's scale: it comes nearer */
+    bool carried = false; /* a hand: with the end of the lever while it touches it */
+};
+
+/* Of a body to one with a smaller index. */
+struct Joint {
+    int a = 0;
+    int b = 1;
+    grrl_joint_type type = GRRL_REVOLUTE;
+    grrl_sim::Vec2 at_a_m; /* the pivot in either body; for a prismatic joint the place of b in a */
+    grrl_sim::Vec2 at_b_m;
+    double angle_rad = 0.0;  /* of b in a at rest */
+    std::vector<Ramp> ramps; /* of the joint's value; the axis is the x axis of a */
+    double value(double t) const;
+};
+
+struct Placed {
+    grrl_sim::Pose pose;
+    double scale = 1.0;
+};
+
+struct Scene {
+    double link_m = 0.3;      /* length of a link */
+    std::vector<Body> bodies; /* [0] is the ground with the frame of a door on it */
+    std::vector<Joint> joints;
+    std::vector<Placed> at(double t) const;
+};
+
+Scene make_scene(Object object, double link_m, uint64_t seed);
+
+} // namespace grrl_experiment::recordings
+
+#endif

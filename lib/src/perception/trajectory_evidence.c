@@ -1,0 +1,177 @@
+/*
+ * trajectory_evidence.c: the residuals of a trajectory, in slow waves and noise, and what they are
+ * worth.
+ *
+ * Residuals are added up with cosines of one half wave over the trajectory, of two, and so on: the
+ * power of a wave is what their autocorrelation has at that frequency. Noise, whatever its
+ * correlation in time, has as much in slow waves as in those a little faster, and that power over
+ * all is one over the number of independent samples. What the slowest waves have beyond it are
+ * errors of hand and mechanism, which no number of samples averages out, or a wrong model.
+ */
+#include "perception/trajectory_evidence.h"
+
+#include <string.h>
+
+#include "grrl/base/geometry.h"
+
+/* Waves are told apart from this number of samples on; with fewer all residuals count as slow. */
+enum { LEAST_SAMPLES = 12 };
+
+/* An arc with a root mean square distance x from its chord turns by x over its length over this:
+ * of a parabola 1 / (8 * 3 / 2 * sqrt(5)). */
+#define BOW_PER_TURN 0.0372678f
+
+/* Before anything is seen. */
+#define PRIOR_RIGID 0.1f
+#define PRIOR_NEITHER 0.1f /* of what moves; the two joints are alike */
+
+/* Standard deviation of the logarithm of a hinge's distance: a factor of three, as handles of
+ * scissors and of garage doors are. */
+#define RADIUS_SPREAD 1.2f
+
+/* A handle that does not move wanders by this, root mean square; one that moves goes some 0.3 m,
+ * within a factor of three. */
+#define WANDER_M 0.0003f
+#define MOTION_M 0.09f
+#define MOTION_SPREAD 1.2f
+
+/* Slow residuals over the length, root mean square: of mechanisms, and of paths that are neither a
+ * line nor a circle, within a factor of two. */
+#define JOINT_SLOW 0.006f
+#define NEITHER_SLOW 0.03f
+#define NEITHER_SPREAD 0.7f
+
+#define ROOT_TWO_PI 2.5066283f
+
+enum { STEPS = 32 }; /* of the integral over the turn, to either side */
+#define STEP_SIGMAS 0.25f
+
+void grrl_trajectory_spectrum_begin(struct grrl_trajectory_spectrum *spectrum, uint32_t n)
+{
+    *spectrum = (struct grrl_trajectory_spectrum){.n = n};
+}
+
+/* cos((k + 1) x) = 2 cos x cos(k x) - cos((k - 1) x). */
+void grrl_trajectory_spectrum_add(struct grrl_trajectory_spectrum *spectrum, float residual_m)
+{
+    float x = GRRL_PI * ((float)spectrum->i + 0.5f) / (float)spectrum->n;
+    float twice = 2.0f * grrl_cos(x);
+    float before = 1.0f;
+    float now = 0.5f * twice;
+    for (int k = 0; k < GRRL_TRAJECTORY_WAVES; k++) {
+        spectrum->wave[k] += residual_m * now;
+        float next = twice * now - before;
+        before = now;
+        now = next;
+    }
+    spectrum->squares += residual_m * residual_m;
+    spectrum->i++;
+}
+
+struct grrl_trajectory_residuals
+grrl_trajectory_spectrum_end(const struct grrl_trajectory_spectrum *spectrum)
+{
+    float n = (float)spectrum->n;
+    struct grrl_trajectory_residuals result = {.total = spectrum->squares / n};
+    if (spectrum->n < LEAST_SAMPLES) {
+        result.slow = result.total;
+        result.wave = result.total / (n > 4.0f ? n - 3.0f : 1.0f);
+        return result;
+    }
+    uint32_t slow_n = (spectrum->n - 1) / 3;
+    slow_n = slow_n < GRRL_TRAJECTORY_SLOW ? slow_n : GRRL_TRAJECTORY_SLOW;
+    for (uint32_t k = 0; k < 3 * slow_n; k++) {
+        float power = 2.0f * spectrum->wave[k] * spectrum->wave[k] / (n * n);
+        if (k < slow_n)
+            result.slow += power;
+        else
+            result.wave += power / (float)(2 * slow_n);
+    }
+    result.slow -= (float)slow_n * result.wave;
+    result.slow = result.slow > 0.0f ? result.slow : 0.0f;
+    float white = result.total > result.slow ? (result.total - result.slow) / n : 0.0f;
+    result.wave = result.wave > white ? result.wave : white; /* samples count once at most */
+    return result;
+}
+
+/* The density of Student's t with four degrees of freedom, and with eight, at x scales. */
+static float student4(float x)
+{
+    float square = 1.0f + 0.25f * x * x;
+    return 0.375f / (square * square * grrl_sqrt(square));
+}
+
+static float student8(float x)
+{
+    float square = 1.0f + 0.125f * x * x;
+    float fourth = square * square * square * square;
+    return 0.386699f / (fourth * grrl_sqrt(square));
+}
+
+/* The density of x, whose logarithm scatters by `spread` about that of the median. */
+static float log_normal(float x, float median, float spread)
+{
+    if (!(x > 0.0f))
+        return 0.0f;
+    float z = grrl_log(x / median) / spread;
+    return grrl_exp(-0.5f * z * z) / (x * spread * ROOT_TWO_PI);
+}
+
+/* How probable a turn as large as seen is if the handle turns by the length over the radius. */
+static float density_of_circle(const struct grrl_trajectory_config *config,
+                               const struct grrl_trajectory_clues *clues, float sigma_rad)
+{
+    float sum = 0.0f;
+    float weights = 0.0f;
+    for (int i = -STEPS; i <= STEPS; i++) {
+        float at = STEP_SIGMAS * (float)i;
+        float turn = clues->turn_rad + sigma_rad * at;
+        float weight = student4(at);
+        weights += weight;
+        turn = turn < 0.0f ? -turn : turn; /* to either side alike */
+        sum += 0.5f * weight * log_normal(turn, clues->length_m / config->radius_m, RADIUS_SPREAD);
+    }
+    return sum / weights;
+}
+
+/* The probability of a hypothesis with this prior, by the densities under it and otherwise. */
+static float share_of(float prior, float density, float otherwise)
+{
+    float both = prior * density + (1.0f - prior) * otherwise;
+    return both > 0.0f ? prior * density / both : prior;
+}
+
+static enum grrl_trajectory_answer answer_of(const struct grrl_trajectory_fit *fit, float decided)
+{
+    return fit->p_rigid >= decided                 ? GRRL_TRAJECTORY_RIGID
+           : fit->p_neither >= decided             ? GRRL_TRAJECTORY_NEITHER
+           : fit->revolute.probability >= decided  ? GRRL_TRAJECTORY_REVOLUTE
+           : fit->prismatic.probability >= decided ? GRRL_TRAJECTORY_PRISMATIC
+                                                   : GRRL_TRAJECTORY_UNDETERMINED;
+}
+
+void grrl_trajectory_weigh(const struct grrl_trajectory_config *config,
+                           const struct grrl_trajectory_clues *clues,
+                           struct grrl_trajectory_fit *fit)
+{
+    const struct grrl_trajectory_residuals *r = &clues->residuals;
+    float bow2 = r->wave + r->slow;
+    float bow_rad = BOW_PER_TURN * clues->length_m;
+    float sigma_rad = grrl_sqrt(config->play_rad * config->play_rad + bow2 / (bow_rad * bow_rad));
+    float line = student4(clues->turn_rad / sigma_rad) / sigma_rad;
+    float circle = density_of_circle(config, clues, sigma_rad);
+    float slow = grrl_sqrt(r->slow) / clues->length_m;
+    float joint = 2.0f * student8(slow / JOINT_SLOW) / JOINT_SLOW;
+    float neither = log_normal(slow, NEITHER_SLOW, NEITHER_SPREAD);
+    float place_m = grrl_sqrt(clues->places.slow);
+    float still = 2.0f * student4(place_m / WANDER_M) / WANDER_M;
+    float moving = log_normal(place_m, MOTION_M, MOTION_SPREAD);
+    fit->p_rigid = share_of(PRIOR_RIGID, still, moving);
+    fit->p_neither = (1.0f - fit->p_rigid) * share_of(PRIOR_NEITHER, neither, joint);
+    float rest = 1.0f - fit->p_rigid - fit->p_neither;
+    fit->revolute.probability = rest * share_of(0.5f, circle, line);
+    fit->prismatic.probability = rest - fit->revolute.probability;
+    fit->answer = answer_of(fit, config->decided);
+    fit->slow_m = grrl_sqrt(r->slow);
+    fit->effective_samples = bow2 > 0.0f ? r->total / bow2 : 0.0f;
+}
