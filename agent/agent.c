@@ -190,6 +190,9 @@ enum grrl_status grrl_agent_init(struct grrl_agent *agent, const struct grrl_age
     agent->heard_us = agent_now_us(agent);
     grrl_wire_bind_model(&agent->model);
     grrl_wire_bind_points(&agent->points);
+    if ((agent_has_table(agent) && config->ground == NULL) ||
+        (config->until_sure > 0.0f && config->pair == NULL))
+        return GRRL_ERR_ARGUMENT;
     enum grrl_status status = grrl_learner_init(&agent->learner, &config->learner, config->policy);
     if (status != GRRL_OK)
         return status;

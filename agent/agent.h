@@ -87,9 +87,13 @@ struct grrl_agent_config {
     /* every pair of links is decided with this probability, and three pushes in a row for each
      * link revealed nothing; needs pair */
     float until_sure;
-    /* grrl_perception_pair; NULL where perception is not in this process */
+    /* Of the library, where the learner is in this process, else NULL: grrl_perception_pair, which
+     * until_sure needs, and grrl_grounding_push, which a table needs. */
     enum grrl_status (*pair)(const struct grrl_perception *perception, uint8_t a, uint8_t b,
                              struct grrl_pair *pair);
+    enum grrl_status (*ground)(const struct grrl_model *model,
+                               const struct grrl_grounding_config *config, uint8_t body,
+                               uint8_t direction, struct grrl_push *push);
 
     int64_t (*now_us)(void *context);
     void (*on_event)(void *context, const struct grrl_agent_event *event);
@@ -168,8 +172,9 @@ struct grrl_agent {
     uint8_t bytes[GRRL_WIRE_MAX_BYTES];
 };
 
-/* GRRL_ERR_ARGUMENT: a parameter of the learner is out of range; GRRL_ERR_IO: LCM refuses. The
- * agent must stay where it is until grrl_agent_close. */
+/* GRRL_ERR_ARGUMENT: a parameter of the learner is out of range, or a function that the
+ * configuration needs is missing; GRRL_ERR_IO: LCM refuses. The agent must stay where it is until
+ * grrl_agent_close. */
 GRRL_MUST_USE enum grrl_status grrl_agent_init(struct grrl_agent *agent,
                                                const struct grrl_agent_config *config, lcm_t *lcm);
 

@@ -38,7 +38,7 @@ static enum grrl_status replace(struct grrl_agent *agent, const struct grrl_deci
         uint8_t body = (uint8_t)((first + i) % n / GRRL_DIRECTIONS);
         uint8_t direction = (uint8_t)((first + i) % GRRL_DIRECTIONS);
         struct grrl_push push;
-        if (grrl_grounding_push(model, &agent->config.learner.grounding, body, direction, &push) ==
+        if (agent->config.ground(model, &agent->config.learner.grounding, body, direction, &push) ==
                 GRRL_OK &&
             stays(agent, &push))
             return grrl_learner_adopt(&agent->learner, model->body[body].number, direction, false,

@@ -182,6 +182,7 @@ static int run_agent(struct run *run)
         .most_pushes = run->options.pushes,
         .until_sure = run->options.until_sure,
         .pair = grrl_perception_pair,
+        .ground = grrl_grounding_push,
         .now_us = grrl_process_now_us,
         .on_event = on_event,
         .context = run,

@@ -22,15 +22,15 @@ std::string at_position(const TermPosition &position, const std::string &message
     return std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + message;
 }
 
-/* Whether a name has the form l1, f1 or v1. */
+/* l1, f1 or v1. */
 bool is_numbered(const std::string &name)
 {
     return name.size() > 1 && std::string("lfv").find(name[0]) != std::string::npos &&
            name.find_first_not_of("0123456789", 1) == std::string::npos;
 }
 
-/* Reads a bare word as a term. Most such words are incomplete names of files or
- * objects, not links. */
+/* A bare word as a term. Most of them are names of files or objects with a part missing, and no
+ * links. */
 Result<ObjectSpec> object_from_word(const std::string &text)
 {
     std::string path = object_path(text);
@@ -39,13 +39,14 @@ Result<ObjectSpec> object_from_word(const std::string &text)
     Result<ObjectSpec> object = object_from_term(text);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
         object = Result<ObjectSpec>::bad("write a single link of this name as L(" + text + ")");
-    if (!object) {
-        std::string names = object_names();
-        object.error = "'" + text +
-                       "' is not a chain such as RPR, not a file such as scissors.grrl, " +
-                       (names.empty() ? "" : "not one of the objects " + names + ", ") +
-                       "and as a term: " + object.error;
-    }
+    if (!object)
+        object.error =
+            "'" + text +
+            "' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: " +
+            object.error;
+    std::string names = object_names();
+    if (!object && !names.empty())
+        object.error += "; by name there are " + names;
     return object;
 }
 
@@ -59,8 +60,7 @@ LinkSpec default_link(grrl_property size)
         link.half_length_m = small_half_length_m;
     else if (size == GRRL_PROPERTY_LARGE)
         link.half_length_m = large_half_length_m;
-    link.mass_kg *=
-        link.half_length_m / LinkSpec{}.half_length_m; /* as if all links were cut from one bar */
+    link.mass_kg *= link.half_length_m / LinkSpec{}.half_length_m; /* as if cut from one bar */
     set_feature_range(link);
     return link;
 }
@@ -95,13 +95,12 @@ Result<ObjectSpec> object_from_chain(const std::string &letters)
     ObjectSpec object;
     grrl_graph_clear(&object.truth);
     if (letters.empty())
-        return Result<ObjectSpec>::bad(
-            "the chain is empty; write one letter R or P for each joint");
+        return Result<ObjectSpec>::bad("an empty chain; write one letter R or P for each joint");
     for (size_t i = 0; i < letters.size(); i++) {
         if (letters[i] != 'R' && letters[i] != 'P')
             return Result<ObjectSpec>::bad(
                 at_position({1, static_cast<unsigned>(i + 1)},
-                            std::string("a chain cannot contain '") + letters[i] +
+                            std::string("a chain has no letter '") + letters[i] +
                                 "'; R is a revolute and P a prismatic joint, such as RPRPRPR"));
     }
     if (letters.size() + 1 > GRRL_MAX_LINKS)

@@ -42,6 +42,7 @@ public:
         config.session_id = agent_session;
         config.now_us = agent_clock;
         config.pair = grrl_perception_pair;
+        config.ground = grrl_grounding_push;
         config.on_event = on_event;
         config.context = this;
         assert_int_equal(grrl_policy_make(&grrl_policy_learn, policy_.bytes, sizeof policy_.bytes,
@@ -211,6 +212,26 @@ void is_never_sure_of_one_link(void **)
     uint8_t a = 9, b = 9;
     assert_true(grrl_agent_sureness(&scene.agent(), &a, &b) <= 0.0f);
     assert_int_equal(a + b, 0);
+}
+
+/* Without the functions that they need, neither a table nor an end is promised. */
+void refuses_what_it_cannot_keep(void **)
+{
+    lcm_t *lcm = lcm_create("memq://");
+    auto agent = std::make_unique<grrl_agent>();
+    POLICY_MEMORY(capacity) memory;
+    grrl_agent_config config = defaults();
+    config.session_id = agent_session;
+    config.now_us = agent_clock;
+    assert_int_equal(grrl_policy_make(&grrl_policy_learn, memory.bytes, sizeof memory.bytes,
+                                      capacity, nullptr, &config.policy),
+                     GRRL_OK);
+    config.until_sure = 0.9f;
+    assert_int_equal(grrl_agent_init(agent.get(), &config, lcm), GRRL_ERR_ARGUMENT);
+    config.until_sure = 0.0f;
+    config.table = {0.0f, 0.0f, 1.0f, 1.0f};
+    assert_int_equal(grrl_agent_init(agent.get(), &config, lcm), GRRL_ERR_ARGUMENT);
+    lcm_destroy(lcm);
 }
 
 /* A pair is named, however sure it is. */
@@ -516,6 +537,7 @@ int main()
         cmocka_unit_test(ends_after_the_pushes_that_were_wanted),
         cmocka_unit_test(ends_when_it_is_sure),
         cmocka_unit_test(is_never_sure_of_one_link),
+        cmocka_unit_test(refuses_what_it_cannot_keep),
         cmocka_unit_test(names_the_pair_it_is_least_sure_of),
         cmocka_unit_test(keeps_the_limits_of_the_robot),
         cmocka_unit_test(no_push_leaves_the_table),

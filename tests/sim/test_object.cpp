@@ -123,8 +123,7 @@ void bad_descriptions_say_what_would_be_right(void **)
         {too_long.c_str(), " (GRRL_MAX_LINKS)"},
         {"R(l1, l2", "1:9: expected"},
         {"foo",
-         "'foo' is not a chain such as RPR, not a file such as scissors.grrl, not one of the "
-         "objects garden-shears, scissors, wooden-toy, and as a term: "
+         "'foo' is not a chain such as RPR, not a file such as scissors.grrl, and as a term: "
          "write a single link of this name as L(foo)"},
         {"l1x", "as L(l1x)"},
         {"foo bar", "and as a term: 1:5: expected '&' or the end of the text, found 'bar'"},
