@@ -139,6 +139,9 @@ private:
     bool busy_ = false;
 };
 
+/* Where the objects lie that World knows by name. */
+void set_object_folder(const std::string &path);
+
 void bind_model(nb::module_ &m);
 void bind_perceive(nb::module_ &m);
 void bind_learner(nb::module_ &m);

@@ -293,6 +293,7 @@ void bind_world(nb::module_ &m)
         .def("judge_learner", &Supervisor::judge_learner, nb::arg("learner"))
         .def("links", &Supervisor::links)
         .def("joints", &Supervisor::joints);
+    m.def("set_object_folder", &set_object_folder, nb::arg("path"));
     m.def("trial_seed", &grrl_sim::trial_seed, nb::arg("seed"), nb::arg("trial"));
     m.def("true_poses", &true_poses, nb::arg("world"));
     m.def("true_joint_values", &true_joint_values, nb::arg("world"));

@@ -61,6 +61,13 @@ def test_truth_is_the_supervisors():
         assert np.all(np.hypot(*off.T) < 0.5 * np.hypot(*supervisor.sizes(world)[link]) + 0.005)
 
 
+def test_objects_that_come_with_grrl():
+    assert grrl.Supervisor("wooden-toy").links == 4
+    assert grrl.World("scissors", 1).observe().ids.size > 10
+    with pytest.raises(ValueError, match="garden-shears, scissors, wooden-toy"):
+        grrl.World("hammer")
+
+
 def test_background_is_not_to_be_found():
     assert grrl.Supervisor("R(lb, l1)").links == 1
     assert grrl.Supervisor("R(lb, l1)").joints == []

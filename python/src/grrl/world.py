@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +11,9 @@ import numpy as np
 from . import _check, _native
 from .learner import Learner, Push
 from .model import TYPES, Model
+
+if _native.HAS_WORLD:
+    _native.set_object_folder(os.path.join(os.path.dirname(__file__), "objects"))
 
 _MOST_LOOKS = 10  # at a scene in which the learner finds nothing to push
 
@@ -72,7 +76,8 @@ class World:
     Parameters
     ----------
     object : str
-        A chain ("RPRPRPR"), a term ("R(l1, R(l2, l3))") or the path of a file of grrl-sim.
+        A chain ("RPRPRPR"), a term ("R(l1, R(l2, l3))"), the name of an object that comes with grrl
+        ("wooden-toy") or the path of a file.
     seed : int
         0 to 2**64 - 1.
     trial : int, optional
