@@ -22,15 +22,15 @@ std::string at_position(const TermPosition &position, const std::string &message
     return std::to_string(position.line) + ":" + std::to_string(position.column) + ": " + message;
 }
 
-/* l1, f1 or v1. */
+/* Whether a name has the form l1, f1 or v1. */
 bool is_numbered(const std::string &name)
 {
     return name.size() > 1 && std::string("lfv").find(name[0]) != std::string::npos &&
            name.find_first_not_of("0123456789", 1) == std::string::npos;
 }
 
-/* A bare word as a term. Most of them are names of files or objects with a part missing, and no
- * links. */
+/* Reads a bare word as a term. Most such words are incomplete names of files or
+ * objects, not links. */
 Result<ObjectSpec> object_from_word(const std::string &text)
 {
     std::string path = object_path(text);
@@ -60,7 +60,8 @@ LinkSpec default_link(grrl_property size)
         link.half_length_m = small_half_length_m;
     else if (size == GRRL_PROPERTY_LARGE)
         link.half_length_m = large_half_length_m;
-    link.mass_kg *= link.half_length_m / LinkSpec{}.half_length_m; /* as if cut from one bar */
+    link.mass_kg *=
+        link.half_length_m / LinkSpec{}.half_length_m; /* as if all links were cut from one bar */
     set_feature_range(link);
     return link;
 }
@@ -95,12 +96,13 @@ Result<ObjectSpec> object_from_chain(const std::string &letters)
     ObjectSpec object;
     grrl_graph_clear(&object.truth);
     if (letters.empty())
-        return Result<ObjectSpec>::bad("an empty chain; write one letter R or P for each joint");
+        return Result<ObjectSpec>::bad(
+            "the chain is empty; write one letter R or P for each joint");
     for (size_t i = 0; i < letters.size(); i++) {
         if (letters[i] != 'R' && letters[i] != 'P')
             return Result<ObjectSpec>::bad(
                 at_position({1, static_cast<unsigned>(i + 1)},
-                            std::string("a chain has no letter '") + letters[i] +
+                            std::string("a chain cannot contain '") + letters[i] +
                                 "'; R is a revolute and P a prismatic joint, such as RPRPRPR"));
     }
     if (letters.size() + 1 > GRRL_MAX_LINKS)

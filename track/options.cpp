@@ -71,8 +71,9 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                            "the camera looks straight down: millimetres a pixel, origin in the\n"
                            "middle",
                            0.01, 100.0, 1.0, &o.scale_mm),
-        grrl_option_call("points", "\"PX,PY=X,Y ..\"",
-                         "four pixels or more and their places, metres", take_points, &o.points),
+        grrl_option_call("points", "PLACES",
+                         "four pixels or more and their places in metres, \"PX,PY=X,Y ..\"",
+                         take_points, &o.points),
         grrl_option_number("distortion", "K",
                            "of the lens, with --scale or --points: share at half the width", -0.25,
                            0.25, 1.0, &o.distortion),

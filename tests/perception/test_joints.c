@@ -516,7 +516,7 @@ static void evidence_of_random_pairs(void **state)
     }
     for (int i = 0; i < MOTIONS; i++) {
         print_message("motion %d: %d of 300 compared, %d joints\n", i, compared[i], accepted[i]);
-        assert_true(compared[i] > 240);
+        assert_true(compared[i] > 200); /* most of them; fewer with fewer keyframes */
     }
     assert_true(accepted[REVOLUTE] > 50);
     assert_true(accepted[PRISMATIC] > 30);

@@ -60,7 +60,7 @@ class Descriptions(unittest.TestCase):
     def test_errors_say_where_and_what(self):
         for text, where in (
             ("link l1 1 1 1\n", ":1:1: the term must come before"),
-            ("\nterm R(l1, x)\n", ":2:12: expected a link"),
+            ("\nterm R(l1, 3)\n", ":2:12: expected a link"),
             ("term R(l1, l2)\nterm R(l1, l2)\n", ":2:1: a second term"),
             ("term R(l1, l2)\nlink l3 0.1 0.1 0.1\n", ":2:6: the term has no link 'l3'"),
             ("term R(l1, l2)\nlink l1 9 0.1 0.1\n", ":2:9: the length '9' must be a number from"),

@@ -78,7 +78,7 @@ class Terms(unittest.TestCase):
         for text, column, words in (
             ("R(l1,", 6, "found the end"),
             ("R(l1)", 5, "a further argument"),
-            ("R(l1, x)", 7, "a link or one of"),
+            ("R(l1, 3)", 7, "a link or one of"),
             ("R(l1, l2) l3", 11, "end of the text"),
             ("R(l1, l1)", 1, "joined to itself"),
             ("R(l1, l2) & P(l2, l1)", 13, "joined twice"),

@@ -225,6 +225,9 @@ def parse_object(text):
         if not re.search(r"[./\\]", text):
             if re.fullmatch(r"[A-Z]*", text):
                 return _from_chain(text)
+            if not re.fullmatch(r"[lfv][0-9]+|lb", text.strip()):
+                raise ObjectError(f"'{text}' is not a chain such as RPR and not the path of a file; write "
+                                  f"a single link of this name as L({text})")
             return _checked(_from_structure(parse_term(text)))
     except TermError as error:
         raise ObjectError(str(error)) from None

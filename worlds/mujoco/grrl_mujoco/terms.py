@@ -1,7 +1,8 @@
 """Relational terms: from a text such as D(lb, R(l1, l2)) to links and joints.
 
 The grammar is that of lib/include/grrl/structure/term.h without actions. A joint connects the link
-written last in its first argument with the link written first in each further one.
+written last in its first argument with the link written first in each further one. Any identifier may
+be a link's name; R, P, D and L are relations and links only before a parenthesis.
 """
 
 import re
@@ -12,7 +13,10 @@ MAX_DEPTH = 64  # of nested relations
 BACKGROUND = "lb"
 
 _WORD = re.compile(r"[A-Za-z0-9_]+")
-_NAME = re.compile(r"[lfv][0-9]+|lb")
+_NUMBERED = re.compile(r"[lfv][0-9]+")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_PROPERTY = re.compile(r"[a-z][A-Za-z0-9_]*|_")
+LONGEST_NAME = 15
 
 
 class TermError(ValueError):
@@ -91,16 +95,17 @@ class _Parser:
 
     def operand(self, depth: int):
         word = self.word()
-        if word in ("R", "P", "D"):
+        is_head = self.text[self.at + len(word):].lstrip(" \t\r\n\v\f").startswith("(")
+        if is_head and word in ("R", "P", "D"):
             return self.relation(word, depth)
-        if word == "L":
+        if is_head and word == "L":
             return self.link()
-        if not _NAME.fullmatch(word):
-            self.fail("a link or one of R, P, D")
-        return self.take_name(word, ())
+        return self.take_name(word, (), "a link or one of R, P, D")
 
-    def take_name(self, word: str, properties):
-        name = word if word == BACKGROUND else f"{word[0]}{int(word[1:])}"
+    def take_name(self, word: str, properties, expected: str):
+        if not _NAME.fullmatch(word) or len(word) > LONGEST_NAME:
+            self.fail(expected)
+        name = f"{word[0]}{int(word[1:])}" if _NUMBERED.fullmatch(word) else word
         column = self.at + 1
         self.at += len(word)
         if name != BACKGROUND:  # a link only when a joint asks for it
@@ -116,17 +121,17 @@ class _Parser:
         properties = []
         while True:
             word = self.word()
-            if _NAME.fullmatch(word):
-                ends = self.take_name(word, tuple(properties))
+            rest = self.text[self.at + len(word):].lstrip(" \t\r\n\v\f")
+            if not rest.startswith(","):
+                ends = self.take_name(word, tuple(properties), "a property or the name of a link")
                 if not self.accept(")"):
                     self.fail("')' after the name of a link")
                 return ends
-            if not re.fullmatch(r"[a-z][A-Za-z0-9_]*|_", word):
-                self.fail("a property or the name of a link")
+            if not _PROPERTY.fullmatch(word) or _NUMBERED.fullmatch(word) or word == BACKGROUND:
+                self.fail("a property")
             properties.append(word)
             self.at += len(word)
-            if not self.accept(","):
-                self.fail("',' after a property")
+            self.accept(",")
 
     def relation(self, kind: str, depth: int):
         begin = self.at
