@@ -19,4 +19,4 @@ if emulate "$target" "$folder/$target-alone/onboard/grrl-image" replay "$folder/
     >"$folder/$target-refused.txt"; then
     fail "an image without the policy paper must refuse it"
 fi
-grep -q 'there is none' "$folder/$target-refused.txt" || fail "not a word of the missing policy"
+grep -q 'nothing found' "$folder/$target-refused.txt" || fail "not a word of the missing policy"
