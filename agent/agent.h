@@ -36,7 +36,7 @@ enum grrl_agent_end {
     GRRL_AGENT_SURE,        /* without a supervisor: every pair of links is decided */
     GRRL_AGENT_PUSHES_DONE, /* without a supervisor: all pushes that were wanted */
     GRRL_AGENT_GAVE_WAY,    /* the robot, which no supervisor watches, moves for another agent: what
-                               moved would be put down to the wrong push */
+                               moved would be attributed to the wrong push */
     GRRL_AGENT_STOPPED      /* somebody sent GRRL_STOP */
 };
 

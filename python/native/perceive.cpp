@@ -28,7 +28,7 @@ namespace
 
 constexpr float large_m =
     0.15f; /* links from this length on are called large; as for the learner */
-constexpr double measured = -1.0; /* a noise that is told from the points */
+constexpr double measured = -1.0; /* estimate the noise from the points */
 
 /* A recording with its storage. */
 struct Tracks {

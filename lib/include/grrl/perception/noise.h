@@ -1,12 +1,12 @@
 /*
- * noise.h: how much tracked points scatter, told from the points themselves.
+ * noise.h: estimates the tracker's noise from its points.
  *
- * What perception needs to know of a tracker is one number, the noise of a point in a frame. Where
- * nobody has measured it, frames at rest tell: the second difference of three frames in a row has
- * six times the variance of a point. A steady motion has none, so that a slow drift does no harm
- * and even frames of motion do little. The median over all points and frames is taken, so that
- * points that vanish, jump or change their ids do not count. A tracker that smooths over time
- * scatters less from frame to frame than it errs: such noise must be given.
+ * Perception needs one number of a tracker: the standard deviation of a point in one frame. Where
+ * nobody has measured it, frames at rest show it: the second difference of three frames in a row
+ * has six times the variance of a point. A steady motion has no second difference, so a slow drift
+ * does no harm and even frames of motion do little. The estimate is the median over all points and
+ * frames, so points that vanish, jump or change their ids do not count. A tracker that smooths over
+ * time scatters less from frame to frame than its error: give its noise by hand.
  *
  * Order of calls: grrl_noise_init, grrl_noise_observe for each frame, grrl_noise_estimate at any
  * time.

@@ -52,7 +52,7 @@ struct grrl_perception_config {
     float slack; /* how much more than noise a split needs, >= 1; 1. A camera's pictures are no
                     exact plane: 5 */
     uint8_t min_features;   /* fewer features are no body; 4 */
-    bool static_background; /* what is sparse at first sight and never moves is background; true.
+    bool static_background; /* sparse points that never move are background; true.
                                false: all that is seen may be a body, as from a moving camera */
 };
 
@@ -165,8 +165,8 @@ struct grrl_perception {
     uint32_t last_frame[GRRL_MAX_FEATURES];
     uint8_t jumps[GRRL_MAX_FEATURES];
     uint8_t body_of[GRRL_MAX_FEATURES];
-    uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group at first sight, 0 none */
-    float reach2_m2; /* features of one object lie closer, squared; at first sight */
+    uint8_t blob_of[GRRL_MAX_FEATURES]; /* dense group in the first keyframe, 0 none */
+    float reach2_m2; /* in the first keyframe, features of one object lie closer, squared */
     bool has_moved[GRRL_MAX_FEATURES]; /* at any time since the first keyframe */
 
     /* private: keyframes */
