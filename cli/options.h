@@ -52,7 +52,7 @@ enum grrl_option_kind {
 /* A row, filled in by the functions below. Strings and target must outlive grrl_options_parse. */
 struct grrl_option {
     const char *name;
-    const char *argument; /* placeholder in --help; NULL: none */
+    const char *argument; /* its name in --help, such as FILE; NULL: none */
     const char *help;     /* a line break continues in the same column */
     enum grrl_option_kind kind;
     void *target;
