@@ -3,25 +3,9 @@
 # ctest calls it as: evaluate.sh GRRL_EVALUATE VERSION
 set -u
 EVALUATE=$1 VERSION=$2
-export LC_ALL=C
-WORK=$(mktemp -d)
-trap 'rm -rf "$WORK"' EXIT
-FAILURES=0
-
-wrong() {
-    echo "FAILED: $*"
-    FAILURES=$((FAILURES + 1))
-}
-
-# expect STATUS PATTERN ARGUMENT..: exit status, and a basic regular expression that the output has
-expect() {
-    local status=$1 pattern=$2 output actual
-    shift 2
-    output=$("$EVALUATE" "$@" 2>&1)
-    actual=$?
-    [ "$actual" -eq "$status" ] || wrong "$*: exit status $actual instead of $status: $output"
-    printf '%s\n' "$output" | grep -q -e "$pattern" || wrong "$*: no '$pattern' in: $output"
-}
+PROGRAM=("$EVALUATE")
+# shellcheck source=tests/expect.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../expect.sh"
 
 expect 0 "^grrl-evaluate $VERSION\$" --version
 expect 0 'Usage: grrl-evaluate perception' --help

@@ -2,25 +2,9 @@
 # Sourced by the tests of grrl-perceive, which ctest calls as: test.sh GRRL_PERCEIVE VERSION SOURCES
 set -u
 PERCEIVE=$1 VERSION=$2 SOURCES=$3
-export LC_ALL=C
-WORK=$(mktemp -d)
-trap 'rm -rf "$WORK"' EXIT
-FAILURES=0
-
-wrong() {
-    echo "FAILED: $*"
-    FAILURES=$((FAILURES + 1))
-}
-
-# expect STATUS PATTERN ARGUMENT..: exit status, and a basic regular expression that the output has
-expect() {
-    local status=$1 pattern=$2 output actual
-    shift 2
-    output=$("$PERCEIVE" "$@" 2>&1)
-    actual=$?
-    [ "$actual" -eq "$status" ] || wrong "$*: exit status $actual instead of $status: $output"
-    printf '%s\n' "$output" | grep -q -e "$pattern" || wrong "$*: no '$pattern' in: $output"
-}
+PROGRAM=("$PERCEIVE")
+# shellcheck source=tests/expect.sh
+. "$(dirname "${BASH_SOURCE[0]}")/../expect.sh"
 
 finish() {
     [ "$FAILURES" -eq 0 ] || exit 1
