@@ -74,7 +74,9 @@ def run_ppo(name, seed, pushes, settings):
     from stable_baselines3.common.callbacks import BaseCallback
 
     class Trials(BaseCallback):
-        rows = []
+        def __init__(self):
+            super().__init__()
+            self.rows = []
 
         def _on_step(self):
             for done, info in zip(self.locals["dones"], self.locals["infos"]):
@@ -86,7 +88,6 @@ def run_ppo(name, seed, pushes, settings):
 
     torch.set_num_threads(1)
     trials = Trials()
-    trials.rows = []
     model = MaskablePPO("MultiInputPolicy", make_environments(name, seed), seed=seed, device="cpu",
                         **settings)
     model.learn(pushes, callback=trials)
@@ -201,12 +202,12 @@ def parse(arguments):
     add = parser.add_argument
     add("--out", required=True, type=pathlib.Path, metavar="DIR", help="folder for the results")
     add("--object", default="RPRPRPR", help="chain, term or file (RPRPRPR)")
-    add("--methods", default=",".join([*OURS, PPO]), metavar="NAME,..", help="of all (%(default)s)")
+    add("--methods", default=",".join([PPO, *OURS]), metavar="NAME,..", help="of all (%(default)s)")
     add("--seed", type=int, default=1, metavar="N", help="run i has the seed 1000 N + i (1)")
     add("--runs", type=int, default=20, metavar="N", help="of each method but MaskablePPO (20)")
     add("--trials", type=int, default=50, metavar="N", help="of such a run (50)")
-    add("--ppo-runs", type=int, default=5, metavar="N", help="of MaskablePPO (5)")
-    add("--pushes", type=int, default=60000, metavar="N", help="of a run of MaskablePPO (60000)")
+    add("--ppo-runs", type=int, default=4, metavar="N", help="of MaskablePPO (4)")
+    add("--pushes", type=int, default=30000, metavar="N", help="of a run of MaskablePPO (30000)")
     add("--gamma", type=float, default=0.9, help="MaskablePPO's discount (0.9)")
     add("--rate", type=float, default=1e-3, help="MaskablePPO's learning rate (0.001)")
     add("--jobs", type=int, default=1, metavar="N", help="runs at the same time (1)")
