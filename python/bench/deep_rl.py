@@ -27,6 +27,7 @@ OURS = {"random": "random", "rule": RULE, "paper": "paper", "learn": "learn"}
 PPO = "ppo"
 COLOURS = {"random": "#888888", "rule": "#009e73", "paper": "#d55e00", "learn": "#0072b2", PPO: "#cc79a7"}
 ENVIRONMENTS = 8  # that MaskablePPO pushes in at the same time
+CAP = 100  # pushes in a trial
 FRESH_TRIALS = 50  # after training
 FRESH_SEED = 10**6  # away from those of training
 # 97.5% quantiles of Student's t by degrees of freedom, from 1 on.
@@ -51,7 +52,7 @@ def run_ours(policy, name, seed, trials):
     learner = grrl.Learner(experiment.load_policy(policy), seed=seed)
     rows, used = [], 0
     for trial in range(1, trials + 1):
-        result = grrl.run_trial(learner, name, trial)
+        result = grrl.run_trial(learner, name, trial, cap=CAP)
         rows.append((used, result.pushes, result.discovered))
         used += result.pushes
     return rows, {}
@@ -61,7 +62,7 @@ def make_environments(name, seed):
     import gymnasium
     from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
-    envs = DummyVecEnv([lambda: gymnasium.make("grrl/Discover-v0", object=name).unwrapped
+    envs = DummyVecEnv([lambda: gymnasium.make("grrl/Discover-v0", object=name, cap=CAP).unwrapped
                         for _ in range(ENVIRONMENTS)])
     envs.seed(seed * ENVIRONMENTS)  # each its own
     return VecNormalize(envs, norm_reward=False, norm_obs_keys=["links", "joints", "tried"])
@@ -99,7 +100,7 @@ def try_out(model, name, seed, deterministic):
     """Pushes of fresh trials."""
     import gymnasium
 
-    env = gymnasium.make("grrl/Discover-v0", object=name).unwrapped
+    env = gymnasium.make("grrl/Discover-v0", object=name, cap=CAP).unwrapped
     normalise = model.get_vec_normalize_env().normalize_obs
     counts = []
     for trial in range(1, FRESH_TRIALS + 1):
@@ -146,7 +147,7 @@ def curve(runs, edges):
 def edges_of(most):
     edges = [0]
     while edges[-1] < most:
-        edges.append(max(edges[-1] * 1.5, edges[-1] + 40))
+        edges.append(max(edges[-1] * 1.5, edges[-1] + CAP))  # so each run has trials in each bin
     return edges
 
 
