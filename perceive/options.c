@@ -23,7 +23,7 @@ static const struct grrl_program program = {
         "--unit says\notherwise.\n\n"
         "Exit status: 0 fine; 1 the input is wrong or cannot be read; 2 wrong command line.\n",
     .most_arguments = 1,
-    .arguments = "only one file of tracks",
+    .arguments = "one file of tracks only",
 };
 
 static const char *take_unit(void *context, const char *text)
