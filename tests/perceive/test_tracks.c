@@ -73,12 +73,12 @@ static const struct {
     const char *text;
     const char *expected;
 } wrong[] = {
-    {"", "f:1:1: the file ends here: the header names the columns frame,point,x,y"},
+    {"", "f:1:1: the file ends here: the header must name the columns frame,point,x,y"},
     {"frame,point,x,y\n\n", "f:3:1: the file ends here: rows are needed"},
     {"frame,point,x\n", "f:1:1: the column y or y_px is missing: the header must name"},
     {"frame,frame,point,x,y\n", "f:1:7: frame: another column has the same meaning"},
     {"frame,point,x,y,x_px\n", "f:1:17: x_px: another column has the same meaning"},
-    {"frame,point,x_px,y\n", "f:1:18: y: one of x and y is in pixels, the other not"},
+    {"frame,point,x_px,y\n", "f:1:18: y: one of x and y is in pixels, the other is not"},
     {"y_px,frame,point,x\n", "f:1:1: y_px: one of x and y is in pixels"},
     {"frame,point,x,y\n0,1,2\n", "f:2:6: 3 fields, but the header has 4"},
     {"frame,point,x,y\n0,1,2,3,4\n", "f:2:9: 5 fields, but the header has 4"},
