@@ -219,9 +219,9 @@ static const struct field stop_fields[] = {
 };
 #undef S
 
-/* The address of value i of a field. A variable array is a pointer in the struct; memcpy reads it
- * regardless of the pointer's type. */
-static unsigned char *place(const struct field *field, void *message, uint32_t i)
+/* The address of a field's first value. A variable array is a pointer in the struct; memcpy reads
+ * it regardless of the pointer's type. */
+static unsigned char *place(const struct field *field, void *message)
 {
     unsigned char *base = (unsigned char *)message + field->offset;
     if (field->n == 0) {
@@ -229,7 +229,7 @@ static unsigned char *place(const struct field *field, void *message, uint32_t i
         memcpy(&array, base, sizeof array);
         base = array;
     }
-    return base + (size_t)i * kind_bytes[field->kind];
+    return base;
 }
 
 static uint32_t count(const struct field *field, const void *message)
@@ -284,15 +284,68 @@ static double load(enum kind kind, const unsigned char *from)
     }
 }
 
-static bool in_range(const struct type *type, const struct field *field, double value,
-                     struct grrl_wire_why *why)
+static bool in_range(const struct field *field, double value)
 {
-    /* Written so that NaN fails. */
-    if (value >= field->range[0] && value <= field->range[1])
-        return true;
+    return value >= field->range[0] && value <= field->range[1]; /* written so that NaN fails */
+}
+
+/* Whether n values are in range. A frame has three arrays of up to 256 values: those in loops that
+ * the compiler turns into vectors, with limits that a float or an int32_t holds exactly. */
+static bool all_in_range(const struct field *field, const unsigned char *values, uint32_t n)
+{
+    unsigned good = 1;
+    if (field->kind == F32) {
+        const float low = (float)field->range[0];
+        const float high = (float)field->range[1];
+        for (uint32_t i = 0; i < n; i++) {
+            float value;
+            memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
+            good &= (unsigned)(value >= low) & (unsigned)(value <= high);
+        }
+    } else if (field->kind == I32) {
+        const int32_t low = (int32_t)field->range[0];
+        const int32_t high = (int32_t)field->range[1];
+        for (uint32_t i = 0; i < n; i++) {
+            int32_t value;
+            memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
+            good &= (unsigned)(value >= low) & (unsigned)(value <= high);
+        }
+    } else {
+        for (uint32_t i = 0; i < n; i++)
+            good &= in_range(
+                field, load((enum kind)field->kind, values + (size_t)i * kind_bytes[field->kind]));
+    }
+    return good != 0;
+}
+
+/* Names the first value that is out of range. */
+static bool refuse(const struct type *type, const struct field *field, const unsigned char *values,
+                   struct grrl_wire_why *why)
+{
+    double value;
+    do {
+        value = load((enum kind)field->kind, values);
+        values += kind_bytes[field->kind];
+    } while (in_range(field, value));
     (void)snprintf(why->text, sizeof why->text, "%s: %s is %.9g, must be %.9g to %.9g", type->name,
                    field->name, value, field->range[0], field->range[1]);
     return false;
+}
+
+/* From the wire's order of bytes to the machine's. */
+static void take(enum kind kind, const uint8_t *bytes, uint32_t n, unsigned char *to)
+{
+    const unsigned width = kind_bytes[kind];
+    if (kind == BYTE) { /* there may be a million */
+        memcpy(to, bytes, n);
+        return;
+    }
+    for (uint32_t i = 0; width == 4 && i < n; i++) {
+        uint32_t bits = (uint32_t)big_endian(bytes + 4 * (size_t)i, 4);
+        memcpy(to + 4 * (size_t)i, &bits, 4);
+    }
+    for (uint32_t i = 0; width != 4 && i < n; i++)
+        store(kind, big_endian(bytes + (size_t)i * width, width), to + (size_t)i * width);
 }
 
 static bool decode(const struct type *type, const void *data, uint32_t size, void *message,
@@ -314,17 +367,11 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
                            type->name, field->name, (unsigned)size);
             return false;
         }
-        if (field->kind == BYTE) { /* every value is right, and there may be a million */
-            memcpy(place(field, message, 0), bytes + at, n);
-            at += n;
-            continue;
-        }
-        for (uint32_t i = 0; i < n; i++, at += width) {
-            unsigned char *to = place(field, message, i);
-            store((enum kind)field->kind, big_endian(bytes + at, width), to);
-            if (!in_range(type, field, load((enum kind)field->kind, to), why))
-                return false;
-        }
+        unsigned char *to = place(field, message);
+        take((enum kind)field->kind, bytes + at, n, to);
+        at += n * width;
+        if (field->kind != BYTE && !all_in_range(field, to, n)) /* every byte is right */
+            return refuse(type, field, to, why);
     }
     if (at == size)
         return true;
@@ -345,11 +392,8 @@ static bool check(const struct type *type, const void *message, struct grrl_wire
             memcpy(&array, base, sizeof array);
             base = array;
         }
-        for (uint32_t i = 0; i < n; i++) {
-            double value = load((enum kind)field->kind, base + (size_t)i * kind_bytes[field->kind]);
-            if (!in_range(type, field, value, why))
-                return false;
-        }
+        if (!all_in_range(field, base, n))
+            return refuse(type, field, base, why);
     }
     return true;
 }

@@ -118,11 +118,20 @@ Vec2 Tracker::true_position(uint32_t id, const std::vector<Pose> &poses) const
 
 void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &frame) const
 {
-    frame.features.clear();
+    std::vector<Vec2> axis; /* of each link: one sine and cosine for all its features */
+    for (const Pose &pose : poses)
+        axis.push_back(direction(pose.angle));
+    size_t n = 0;
+    frame.features.resize(features_.size());
     for (uint32_t id = 0; id < features_.size(); id++) {
-        Vec2 point = true_position(id, poses);
-        if (features_[id].link < 0 && covered(point, poses, 0.0))
+        const Feature &feature = features_[id];
+        Vec2 point = feature.place_m;
+        if (feature.link >= 0) {
+            size_t link = static_cast<size_t>(feature.link);
+            point = poses[link].position + rotate(point, axis[link]);
+        } else if (covered(point, poses, 0.0)) {
             continue;
+        }
         if (params_.dropout_probability > 0.0 && noise.uniform() < params_.dropout_probability)
             continue;
         if (params_.outlier_probability > 0.0 && noise.uniform() < params_.outlier_probability) {
@@ -131,8 +140,9 @@ void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &fram
         }
         double x = point.x + params_.noise_sigma_m * noise.normal();
         double y = point.y + params_.noise_sigma_m * noise.normal();
-        frame.features.push_back({id, x, y});
+        frame.features[n++] = {id, x, y};
     }
+    frame.features.resize(n);
 }
 
 } // namespace grrl_sim
