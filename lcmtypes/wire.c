@@ -69,7 +69,7 @@ static const struct field points_fields[] = {
     ONE(P, I32, trial_id, COUNT32),
     ONE(P, I32, ack_cmd_seq, COUNT32),
     ONE(P, I64, agent_session_id, COUNT64),
-    ONE(P, I8, mode, GRRL_POINTS_T_REAL_TIME, GRRL_POINTS_T_LOCK_STEP),
+    ONE(P, I8, mode, GRRL_POINTS_T_REAL_TIME, GRRL_POINTS_T_MORE),
     ONE(P, I8, phase, GRRL_POINTS_T_UNKNOWN, GRRL_POINTS_T_SETTLED),
     ONE(P, I32, n_points, 0, GRRL_WIRE_MAX_POINTS),
     MANY(P, I32, id, n_points, ANY32),
