@@ -142,7 +142,6 @@ struct grrl_agent {
     int64_t plant_session_id; /* 0: none yet */
     int64_t plant_heard_us;   /* observing: by the clock of the messages */
     int64_t heard_us;
-    bool lock_step;
     enum grrl_agent_end end;
     grrl_stop_t stop; /* as it came; session_id 0: none, or a malformed one */
     bool rival_seen;  /* and told */
@@ -154,6 +153,7 @@ struct grrl_agent {
     int32_t trial_id; /* of the learner's trial */
     int32_t cmd_seq;  /* the last push commanded (observing: seen) */
     int64_t seq;      /* the newest frame taken in */
+    bool begun;       /* a frame of this trial was */
     bool adopted;     /* the learner knows what push cmd_seq is */
     int rest_frames;  /* since the last motion, for senders that do not tell the phase */
     int32_t rest_ack;
