@@ -18,36 +18,22 @@ namespace
 {
 
 /* FNV-1a. */
-std::string hash_of_file(const std::string &path)
+std::string hash_of(const std::string &bytes)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
-    for (char byte : read_file(path).value_or(""))
+    for (char byte : bytes)
         hash = (hash ^ static_cast<unsigned char>(byte)) * UINT64_C(1099511628211);
     char text[20];
     (void)std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
     return text;
 }
 
-/* An object by its name; a file also by its content. */
-std::string object_line(const std::string &object)
-{
-    return read_file(object) ? object + " (" + hash_of_file(object) + ")" : object;
-}
-
-std::string settings_of(const Options &options, const Plan &plan)
+std::string settings_of(const Options &options)
 {
     std::ostringstream text;
-    text << "program " << hash_of_file("/proc/self/exe") << "\n"
-         << "seed " << options.seed << "\n"
+    text << "program " << hash_of(read_file("/proc/self/exe").value_or("")) << "\n"
          << "cap " << options.cap << "\n"
          << "noise " << options.noise_mm << "\n";
-    for (const Curve &curve : plan.curves)
-        text << "curve " << object_line(curve.object) << ", " << curve.policy->name << ", "
-             << curve.trials << " trials, before them "
-             << (curve.pretrain.empty()
-                     ? "none"
-                     : object_line(curve.pretrain) + ":" + std::to_string(curve.pretrain_trials))
-             << "\n";
     return text.str();
 }
 
@@ -69,13 +55,11 @@ std::pair<std::string, std::string> difference(const std::string &a, const std::
 
 } // namespace
 
-Folder::Folder(const Options &options, const Plan &plan) : root_(options.out)
+Folder::Folder(const Options &options) : root_(options.out)
 {
-    for (const Curve &curve : plan.curves)
-        trials_.push_back(curve.trials);
     make_folder(path("experiments"));
     lock();
-    check_settings(settings_of(options, plan));
+    check_settings(settings_of(options));
 }
 
 Folder::~Folder()
@@ -108,17 +92,18 @@ void Folder::check_settings(const std::string &settings) const
                              "' there, '" + here + "' here; name another folder or remove it");
 }
 
-std::string Folder::experiment_path(size_t curve, int experiment) const
+std::string Folder::experiment_path(const Curve &curve, uint64_t seed) const
 {
-    char name[60];
-    (void)std::snprintf(name, sizeof name, "experiments/curve-%02zu-%04d.csv", curve + 1,
-                        experiment);
-    return path(name);
+    std::string key = curve.course.key + "\n" + std::to_string(curve.trials()) + "\n";
+    for (const Course &before : curve.before)
+        key += before.key + "\n" + std::to_string(before.trials) + "\n";
+    return path("experiments/" + curve.policy->name + "-" + hash_of(key) + "-" +
+                std::to_string(seed) + ".csv");
 }
 
-std::optional<Trials> Folder::load(size_t curve, int experiment) const
+std::optional<Trials> Folder::load(const Curve &curve, uint64_t seed) const
 {
-    std::optional<std::string> text = read_file(experiment_path(curve, experiment));
+    std::optional<std::string> text = read_file(experiment_path(curve, seed));
     if (!text)
         return std::nullopt;
     std::istringstream lines(*text);
@@ -135,18 +120,18 @@ std::optional<Trials> Folder::load(size_t curve, int experiment) const
         row.discovered = discovered != 0;
         trials.push_back(row);
     }
-    if (static_cast<int>(trials.size()) != trials_[curve])
+    if (static_cast<int>(trials.size()) != curve.trials())
         return std::nullopt;
     return trials;
 }
 
-void Folder::save(size_t curve, int experiment, const Trials &trials) const
+void Folder::save(const Curve &curve, uint64_t seed, const Trials &trials) const
 {
     std::ostringstream text;
     for (const TrialRow &row : trials)
         text << row.trial << "," << row.pushes << "," << (row.discovered ? 1 : 0) << ","
              << row.wrong_joints << "\n";
-    write_file(experiment_path(curve, experiment), text.str());
+    write_file(experiment_path(curve, seed), text.str());
 }
 
 } // namespace grrl_experiment

@@ -22,7 +22,7 @@ namespace
 
 struct Task {
     size_t curve;
-    int experiment; /* from 1 */
+    uint64_t seed; /* of the experiment */
 };
 
 /* In a worker: runs one experiment, from an empty memory to its file. */
@@ -32,37 +32,37 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     Phase phase;
     phase.policy = curve.policy;
     phase.cap = options.cap;
-    phase.noise_m = options.noise_mm * 0.001;
-    uint64_t seed = experiment_seed(options.seed, task.experiment);
+    phase.world.tracker.noise_sigma_m = options.noise_mm * 0.001;
     Bytes experience;
-    if (!curve.pretrain.empty()) {
-        phase.object = curve.pretrain_spec;
-        phase.trials = curve.pretrain_trials;
-        phase.seed = pretrain_seed(seed);
+    uint64_t seed = task.seed;
+    for (const Course &course : curve.before) {
+        phase.objects = course.objects;
+        phase.trials = course.trials;
+        phase.seed = seed = pretrain_seed(seed);
         experience = run_phase(options.transport, phase, experience,
                                [&](const TrialRow &row) { report(row.pushes); });
     }
-    phase.object = curve.object_spec;
-    phase.trials = curve.trials;
-    phase.seed = seed;
+    phase.objects = curve.course.objects;
+    phase.trials = curve.trials();
+    phase.seed = task.seed;
     Trials trials;
     (void)run_phase(options.transport, phase, experience, [&](const TrialRow &row) {
         trials.push_back(row);
         report(row.pushes);
     });
-    if (static_cast<int>(trials.size()) != curve.trials)
+    if (static_cast<int>(trials.size()) != curve.trials())
         throw std::runtime_error("trials are missing");
-    folder.save(task.curve, task.experiment, trials);
+    folder.save(curve, task.seed, trials);
 }
 
 /* Curves take turns, so that the remaining time can be estimated from what is done. */
 std::vector<Task> tasks_left(const Options &options, const Plan &plan, const Folder &folder)
 {
     std::vector<Task> tasks;
-    for (int e = 1; e <= options.experiments; e++)
+    for (uint64_t seed : experiment_seeds(options))
         for (size_t c = 0; c < plan.curves.size(); c++)
-            if (!folder.load(c, e))
-                tasks.push_back({c, e});
+            if (!folder.load(plan.curves[c], seed))
+                tasks.push_back({c, seed});
     return tasks;
 }
 
@@ -77,8 +77,8 @@ JobsResult run_tasks(const Options &options, const Plan &plan, const Folder &fol
     std::vector<Task> tasks = tasks_left(options, plan, folder);
     int64_t trials = 0;
     for (const Task &task : tasks)
-        trials += plan.curves[task.curve].trials + plan.curves[task.curve].pretrain_trials;
-    size_t all = plan.curves.size() * static_cast<size_t>(options.experiments);
+        trials += plan.curves[task.curve].all_trials();
+    size_t all = plan.curves.size() * experiment_seeds(options).size();
     if (tasks.size() < all)
         (void)std::fprintf(stderr, "grrl-experiment: %zu of %zu experiments are already done\n",
                            all - tasks.size(), all);
@@ -106,14 +106,17 @@ void publish(const Options &options, const Plan &plan, const Folder &folder)
 {
     std::vector<Experiments> results(plan.curves.size());
     for (size_t c = 0; c < plan.curves.size(); c++)
-        for (int e = 1; e <= options.experiments; e++) {
-            std::optional<Trials> trials = folder.load(c, e);
+        for (uint64_t seed : experiment_seeds(options)) {
+            std::optional<Trials> trials = folder.load(plan.curves[c], seed);
             if (!trials)
                 throw std::runtime_error("the results of an experiment have disappeared");
             results[c].push_back(*trials);
         }
-    write_file(folder.path("trials.csv"), trials_csv(plan, results, options.seed));
+    write_file(folder.path("trials.csv"), trials_csv(plan, results, experiment_seeds(options)));
     write_file(folder.path("summary.csv"), summary_csv(plan, results));
+    std::string objects = objects_csv(plan, experiment_seeds(options));
+    if (!objects.empty())
+        write_file(folder.path("objects.csv"), objects);
     bool drawn = true;
     for (const Figure &figure : plan.figures) {
         drawn = draw(folder, plan, figure, results) && drawn;
@@ -128,7 +131,7 @@ void publish(const Options &options, const Plan &plan, const Folder &folder)
 
 int run(const Options &options, const Plan &plan)
 {
-    Folder folder(options, plan);
+    Folder folder(options);
     switch (run_tasks(options, plan, folder)) {
     case JobsResult::FAILED:
         return 1;

@@ -2,6 +2,7 @@
 #include "options.hpp"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "cli/options.hpp"
@@ -39,18 +40,45 @@ const char *take_policies(void *context, const char *value)
     return nullptr;
 }
 
+const char *take_object(void *context, const char *value)
+{
+    static_cast<std::vector<std::string> *>(context)->push_back(value);
+    return nullptr;
+}
+
 const char *take_pretrain(void *context, const char *value)
+{
+    std::string object;
+    int trials = 0;
+    if (!split_pretrain(value, object, trials))
+        return "an object, a colon and a number of trials from 1 to 10000, such as RRRRR:50";
+    return take_object(context, value);
+}
+
+/* A stream to live with, or, with a number of trials, to live with before. */
+const char *take_stream(void *context, const char *value)
+{
+    auto &options = *static_cast<Options *>(context);
+    std::string object;
+    int trials = 0;
+    bool before = split_pretrain(value, object, trials);
+    const std::string name = before ? object : value;
+    if (name.size() < 8 || name.substr(name.size() - 7) != ".stream")
+        return "a file such as mixed.stream, or mixed.stream:200 for 200 trials before --then";
+    return take_object(before ? &options.pretrain : &options.objects, value);
+}
+
+const char *take_seeds(void *context, const char *value)
 {
     auto &options = *static_cast<Options *>(context);
     const std::string text = value;
-    size_t colon = text.rfind(':');
-    uint64_t trials = 0;
-    if (colon == std::string::npos || colon == 0 ||
-        !grrl_option_integer_of(value + colon + 1, 1, 10000, &trials))
-        return "an object, a colon and a number of trials from 1 to 10000, such as RRRRR:50";
-    options.pretrain = text.substr(0, colon);
-    options.pretrain_trials = static_cast<int>(trials);
-    return nullptr;
+    size_t dots = text.find("..");
+    std::string first = text.substr(0, dots);
+    std::string last = dots == std::string::npos ? first : text.substr(dots + 2);
+    constexpr uint64_t most = 1000000000;
+    bool good = grrl_option_integer_of(first.c_str(), 0, most, &options.first_seed) &&
+                grrl_option_integer_of(last.c_str(), options.first_seed, most, &options.last_seed);
+    return good ? nullptr : "a whole number from 0 to 1000000000, or a range such as 1..5";
 }
 
 const char *take_transport(void *context, const char *value)
@@ -82,9 +110,15 @@ std::string help_after_options()
     rows(policies(), 12);
     text << "\nAblations, by --figure ablations (RPRPRPR) or by name:\n";
     rows(ablations(), 25);
+    text << "\nA stream is a file FILE.stream, which describes a distribution of objects. Each "
+            "trial\n"
+            "draws one: trial t of a seed has the same object for every policy. Statements:\n"
+            "links, revolute, branches, loops, objects, size, length, width, friction, such as\n"
+            "\"links 3..6, 8\"; see examples/mixed.stream.\n";
     text << "\nWrites trials.csv, summary.csv, report.html and pictures (SVG, PNG; needs gnuplot)\n"
             "to DIR.\n"
-            "An interrupted run resumes there: finished experiments are kept.\n"
+            "An interrupted run resumes there: finished experiments are kept. Further policies,\n"
+            "objects and seeds may join them.\n"
             "The same command gives the same CSV for any --jobs and --transport.\n"
             "Exit status: 0 done; 1 failure; 2 wrong command line; 130 interrupted.\n";
     return text.str();
@@ -93,10 +127,13 @@ std::string help_after_options()
 /* The error in the combination of options, or nullptr. */
 const char *contradiction(const Options &options)
 {
-    if (options.object.empty() == options.figure.empty())
+    if (options.objects.empty() == options.figure.empty())
         return "give either --figure or --object, for example --object RPR";
     if (!options.figure.empty() && !options.pretrain.empty())
         return "--pretrain requires --object; a figure has its own";
+    std::set<std::string> objects(options.objects.begin(), options.objects.end());
+    if (objects.size() < options.objects.size())
+        return "--object: the same one twice";
     if (options.out.empty())
         return "--out is required: a folder for the results";
     for (const Policy *policy : options.policies)
@@ -119,6 +156,27 @@ std::string command_of(int argc, char **argv)
 
 } // namespace
 
+bool split_pretrain(const std::string &text, std::string &object, int &trials)
+{
+    size_t colon = text.rfind(':');
+    uint64_t number = 0;
+    if (colon == std::string::npos || colon == 0 ||
+        !grrl_option_integer_of(text.c_str() + colon + 1, 1, 10000, &number))
+        return false;
+    object = text.substr(0, colon);
+    trials = static_cast<int>(number);
+    return true;
+}
+
+std::vector<uint64_t> experiment_seeds(const Options &options)
+{
+    std::vector<uint64_t> seeds;
+    for (uint64_t seed = options.first_seed; seed <= options.last_seed; seed++)
+        for (int i = 1; i <= options.experiments; i++)
+            seeds.push_back(1000 * seed + static_cast<uint64_t>(i));
+    return seeds;
+}
+
 grrl_options_result parse_options(int argc, char **argv, Options &options)
 {
     Options &o = options;
@@ -126,19 +184,28 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
     const grrl_option rows[] = {
         grrl_option_call("figure", "NAME", "of the paper: 3b, 4a, 4b, 4c or all; or ablations",
                          take_figure, &o.figure),
-        grrl_option_text("object", "OBJECT", "or: chain (RPR), term (D(lb, R(l1, l2))) or file",
-                         &o.object),
+        grrl_option_each("object", "OBJECT",
+                         "or: chain (RPR), term (D(lb, R(l1, l2))), file or stream (below);\n"
+                         "several add up",
+                         take_object, &o.objects),
         grrl_option_call("policy", "NAME[,..]",
                          "policies, see below (learn; with --figure: those of the figure)",
                          take_policies, &o.policies),
-        grrl_option_call("pretrain", "OBJECT:N",
-                         "with --object: compare with pretraining, N trials on another one",
-                         take_pretrain, &o),
+        grrl_option_each("pretrain", "OBJECT:N",
+                         "with --object: compare with pretraining, N trials on another one;\n"
+                         "several add up, in their order",
+                         take_pretrain, &o.pretrain),
+        grrl_option_each("stream", "FILE[:N]", "as --object FILE, or as --pretrain FILE:N",
+                         take_stream, &o),
+        grrl_option_each("then", "OBJECT", "after --stream FILE:N: as --object", take_object,
+                         &o.objects),
         grrl_option_int("trials", "N", "of an experiment (50)", 1, 10000, &o.trials),
         grrl_option_int("experiments", "N", "each starting without experience (20)", 1, 1000,
                         &o.experiments),
-        grrl_option_u64("seed", "N", "experiment i has the seed 1000 N + i (1)", 0, 1000000000,
-                        &o.seed),
+        grrl_option_call("seed", "N[..M]",
+                         "experiment i has the seed 1000 N + i (1); a range runs the\n"
+                         "experiments of each seed",
+                         take_seeds, &o),
         grrl_option_int("jobs", "N", "experiments run in parallel (one per core)", 1, 256, &o.jobs),
         grrl_option_text("out", "DIR", "folder for the results; required", &o.out),
         grrl_option_call("transport", "NAME",

@@ -1,6 +1,9 @@
 /* plan.cpp: determines the curves for a figure or a command line. */
 #include "plan.hpp"
 
+#include "files.hpp"
+#include "object_folder.hpp"
+#include "object_stream.hpp"
 #include "options.hpp"
 
 namespace grrl_experiment
@@ -9,6 +12,7 @@ namespace grrl_experiment
 namespace
 {
 
+constexpr const char *stream_suffix = ".stream";
 constexpr int paper_pretrain_trials = 50;
 constexpr const char *ablations_object = "RPRPRPR";
 
@@ -30,33 +34,62 @@ const std::vector<PaperFigure> &paper_figures()
     return table;
 }
 
+Course course_of(const std::string &text, int trials)
+{
+    Course course;
+    course.text = text;
+    course.trials = trials;
+    return course;
+}
+
 /* Adds the curve without pretraining and, where it makes a difference, with it. */
 void add_curves(Plan &plan, Figure &figure, const Curve &base)
 {
     Curve without = base;
-    without.pretrain.clear();
-    without.pretrain_trials = 0;
+    without.before.clear();
     figure.curves.push_back(plan.curves.size());
     plan.curves.push_back(without);
-    if (base.pretrain.empty() || !base.policy->learns())
+    if (base.before.empty() || !base.policy->learns())
         return;
     figure.curves.push_back(plan.curves.size());
     plan.curves.push_back(base);
 }
 
+bool ends_with(const std::string &text, const std::string &end)
+{
+    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/* Fills in the objects of a course, and returns what is wrong with them. */
+std::string read_course(Course &course)
+{
+    std::string path = grrl_sim::object_path(course.text);
+    course.key = read_file(path.empty() ? course.text : path).value_or(course.text);
+    course.stream = ends_with(course.text, stream_suffix);
+    if (course.stream) {
+        auto stream = grrl_sim::stream_from_file(course.text);
+        if (!stream)
+            return stream.error;
+        course.objects = [all = *stream.value](uint64_t seed, int32_t trial) {
+            return all.sample(grrl_sim::trial_seed(seed, trial));
+        };
+        return {};
+    }
+    auto object = grrl_sim::object_from_text(course.text);
+    if (!object)
+        return course.text + ": " + object.error;
+    course.objects = [only = *object.value](uint64_t, int32_t) { return only; };
+    return {};
+}
+
 std::string read_objects(Plan &plan)
 {
     for (Curve &curve : plan.curves) {
-        auto object = grrl_sim::object_from_text(curve.object);
-        if (!object)
-            return curve.object + ": " + object.error;
-        curve.object_spec = *object.value;
-        if (curve.pretrain.empty())
-            continue;
-        auto pretrain = grrl_sim::object_from_text(curve.pretrain);
-        if (!pretrain)
-            return curve.pretrain + ": " + pretrain.error;
-        curve.pretrain_spec = *pretrain.value;
+        std::string error = read_course(curve.course);
+        for (Course &course : curve.before)
+            error = error.empty() ? read_course(course) : error;
+        if (!error.empty())
+            return error;
     }
     return {};
 }
@@ -67,11 +100,9 @@ void add_figure(Plan &plan, const Options &options, const PaperFigure &paper)
     figure.name = std::string("figure-") + paper.name;
     figure.title = std::string("Figure ") + paper.name + ": " + paper.object;
     Curve curve;
-    curve.object = paper.object;
-    curve.trials = options.trials;
+    curve.course = course_of(paper.object, options.trials);
     if (paper.pretrain != nullptr) {
-        curve.pretrain = paper.pretrain;
-        curve.pretrain_trials = paper_pretrain_trials;
+        curve.before.push_back(course_of(paper.pretrain, paper_pretrain_trials));
         figure.title += std::string(", without and with ") + std::to_string(paper_pretrain_trials) +
                         " trials of " + paper.pretrain;
     }
@@ -103,27 +134,43 @@ void add_ablations(Plan &plan, const Options &options)
         }
     for (const Policy *policy : chosen) {
         Curve curve;
-        curve.object = ablations_object;
-        curve.trials = options.trials;
+        curve.course = course_of(ablations_object, options.trials);
         curve.policy = policy;
         add_curves(plan, figure, curve);
     }
     plan.figures.push_back(figure);
 }
 
-void add_own(Plan &plan, const Options &options)
+/* Where the clairvoyant ran, too, a second figure shows the distance from it. */
+void add_distance_from_bound(Plan &plan, const Figure &figure)
+{
+    Figure distance = figure;
+    distance.name += "-above-clairvoyant";
+    distance.title += ": above the clairvoyant";
+    distance.curves.clear();
+    for (size_t c : figure.curves)
+        if (plan.curves[c].policy->needs_truth)
+            distance.bound = c;
+        else
+            distance.curves.push_back(c);
+    if (distance.bound && !distance.curves.empty())
+        plan.figures.push_back(distance);
+}
+
+void add_own(Plan &plan, const Options &options, size_t which)
 {
     Figure figure;
-    figure.name = "curves";
-    figure.title = options.object;
+    figure.name = which == 0 ? "curves" : "curves-" + std::to_string(which + 1);
+    figure.title = options.objects[which];
     Curve curve;
-    curve.object = options.object;
-    curve.trials = options.trials;
-    curve.pretrain = options.pretrain;
-    curve.pretrain_trials = options.pretrain_trials;
-    if (!options.pretrain.empty())
-        figure.title += ", without and with " + std::to_string(options.pretrain_trials) +
-                        " trials of " + options.pretrain;
+    curve.course = course_of(options.objects[which], options.trials);
+    for (const std::string &pretrain : options.pretrain) {
+        Course course;
+        (void)split_pretrain(pretrain, course.text, course.trials);
+        figure.title += (curve.before.empty() ? ", without and with " : " and ") +
+                        std::to_string(course.trials) + " trials of " + course.text;
+        curve.before.push_back(course);
+    }
     std::vector<const Policy *> chosen = options.policies;
     if (chosen.empty())
         chosen.push_back(find_policy("learn"));
@@ -132,13 +179,25 @@ void add_own(Plan &plan, const Options &options)
         add_curves(plan, figure, curve);
     }
     plan.figures.push_back(figure);
+    add_distance_from_bound(plan, figure);
 }
 
 } // namespace
 
 std::string Curve::pretrain_text() const
 {
-    return pretrain.empty() ? "none" : pretrain + ":" + std::to_string(pretrain_trials);
+    std::string text;
+    for (const Course &earlier : before)
+        text += (text.empty() ? "" : ", ") + earlier.text + ":" + std::to_string(earlier.trials);
+    return text.empty() ? "none" : text;
+}
+
+int Curve::all_trials() const
+{
+    int all = course.trials;
+    for (const Course &earlier : before)
+        all += earlier.trials;
+    return all;
 }
 
 std::vector<std::string> figure_names()
@@ -154,8 +213,8 @@ std::vector<std::string> figure_names()
 grrl_sim::Result<Plan> make_plan(const Options &options)
 {
     Plan plan;
-    if (options.figure.empty())
-        add_own(plan, options);
+    for (size_t i = 0; i < options.objects.size(); i++)
+        add_own(plan, options, i);
     if (options.figure == "ablations")
         add_ablations(plan, options);
     for (const PaperFigure &figure : paper_figures())

@@ -48,19 +48,20 @@ std::string table_of(const Plan &plan, const Figure &figure,
                      const std::vector<Experiments> &results)
 {
     std::ostringstream html;
-    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials);
+    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials());
     html << "<table>\n<tr><th>trials</th>";
     for (const Range &column : columns)
         html << "<th>" << column.label << "</th>";
     html << "<th>at the cap</th></tr>\n";
     for (size_t c : figure.curves) {
+        Experiments rows = shown(figure, results, c);
         html << "<tr><td>" << escaped(curve_label(plan.curves[c], false)) << "</td>";
         for (const Range &column : columns)
-            html << "<td>" << mean_text(pushes(results[c], column.first, column.last), "&plusmn;")
+            html << "<td>" << mean_text(pushes(rows, column.first, column.last), "&plusmn;")
                  << "</td>";
         char share[20];
         (void)std::snprintf(share, sizeof share, "%.1f%%",
-                            100.0 * capped(results[c], 1, plan.curves[c].trials));
+                            100.0 * capped(rows, 1, plan.curves[c].trials()));
         html << "<td>" << share << "</td></tr>\n";
     }
     html << "</table>\n";
@@ -92,7 +93,8 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
                         const std::vector<Experiments> &results)
 {
     std::ostringstream html;
-    html << head << "<pre>" << escaped(options.command) << "</pre>\n<p>" << options.experiments
+    html << head << "<pre>" << escaped(options.command) << "</pre>\n<p>"
+         << experiment_seeds(options).size()
          << " experiments for each curve, each starting without experience; means with 95% "
             "intervals (t "
             "distribution over experiments). A trial ends when the supervisor sees the true "
@@ -105,7 +107,7 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
             html << "<img alt=\"" << escaped(figure.title) << "\" src=\"data:image/svg+xml;base64,"
                  << base64(*picture) << "\">\n"
                  << (figure.kind == Figure::Kind::CURVES
-                         ? "<p>Lines: means of up to five trials with their intervals; points: "
+                         ? "<p>Lines: means over neighbouring trials with their intervals; points: "
                            "means of one trial. In a transfer, dashed lines are without "
                            "pretraining.</p>\n"
                          : "<p>Means with their intervals over the first five trials (hollow) and "
