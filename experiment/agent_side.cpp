@@ -79,7 +79,7 @@ grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *nod
                                    grrl_learner_config &learner)
 {
     const Policy &policy = *phase.policy;
-    if (policy.make_chooser != nullptr) {
+    if (policy.make_chooser) {
         chooser_ = policy.make_chooser(node, phase.seed);
         return policy_of(*chooser_);
     }

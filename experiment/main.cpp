@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "claims.hpp"
 #include "files.hpp"
 #include "folder.hpp"
 #include "jobs.hpp"
@@ -32,7 +33,7 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     Phase phase;
     phase.policy = curve.policy;
     phase.cap = options.cap;
-    phase.world.tracker.noise_sigma_m = options.noise_mm * 0.001;
+    phase.world = curve.conditions.world;
     Bytes experience;
     uint64_t seed = task.seed;
     for (const Course &course : curve.before) {
@@ -117,14 +118,19 @@ void publish(const Options &options, const Plan &plan, const Folder &folder)
     std::string objects = objects_csv(plan, experiment_seeds(options));
     if (!objects.empty())
         write_file(folder.path("objects.csv"), objects);
+    std::string claims = claims_table(plan, results);
+    if (!claims.empty())
+        write_file(folder.path("claims.txt"), claims);
     bool drawn = true;
     for (const Figure &figure : plan.figures) {
-        drawn = draw(folder, plan, figure, results) && drawn;
+        drawn = (!figure.drawn || draw(folder, plan, figure, results)) && drawn;
         (void)std::printf("%s\n", text_table(plan, figure, results).c_str());
     }
     if (!drawn)
         (void)std::fprintf(stderr, "grrl-experiment: no pictures: gnuplot (with pngcairo) is "
                                    "missing or failed; run it on the .gp files\n");
+    if (!claims.empty())
+        (void)std::printf("%s\n", claims.c_str());
     write_file(folder.path("report.html"), report_html(options, folder, plan, results));
     (void)std::printf("%s\n", folder.path("report.html").c_str());
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "cli/options.hpp"
+#include "conditions.hpp"
 #include "plan.hpp"
 
 namespace grrl_experiment
@@ -19,7 +20,7 @@ std::string policy_names()
     std::string names = "one or more, without repetition, of ";
     for (const Policy &policy : policies())
         names += policy.name + ", ";
-    return names + "or an ablation (--help)";
+    return names + "rules (all of their orders) or an ablation (--help)";
 }
 
 const char *take_policies(void *context, const char *value)
@@ -30,14 +31,33 @@ const char *take_policies(void *context, const char *value)
     chosen.clear();
     for (size_t at = 0; at <= text.size();) {
         size_t end = std::min(text.find(',', at), text.size());
-        const Policy *policy = find_policy(text.substr(at, end - at));
-        bool again = std::find(chosen.begin(), chosen.end(), policy) != chosen.end();
-        if (policy == nullptr || again)
+        const std::string name = text.substr(at, end - at);
+        size_t before = chosen.size();
+        for (const Policy &policy : policies())
+            if (name == "rules" && policy.is_rule)
+                chosen.push_back(&policy);
+        if (name != "rules" && find_policy(name) != nullptr)
+            chosen.push_back(find_policy(name));
+        std::set<const Policy *> different(chosen.begin(), chosen.end());
+        if (chosen.size() == before || different.size() < chosen.size())
             return right.c_str();
-        chosen.push_back(policy);
         at = end + 1;
     }
     return nullptr;
+}
+
+const char *take_world(void *context, const char *value)
+{
+    static std::string right;
+    auto &worlds = *static_cast<std::vector<std::string> *>(context);
+    const std::string text = value;
+    Conditions conditions;
+    right = text == "grid" ? "" : parse_conditions(text, conditions);
+    if (text == "grid")
+        worlds.insert(worlds.end(), grid_of_worlds().begin(), grid_of_worlds().end());
+    else
+        worlds.push_back(text);
+    return right.empty() ? nullptr : right.c_str();
 }
 
 const char *take_object(void *context, const char *value)
@@ -115,6 +135,7 @@ std::string help_after_options()
             "draws one: trial t of a seed has the same object for every policy. Statements:\n"
             "links, revolute, branches, loops, objects, size, length, width, friction, such as\n"
             "\"links 3..6, 8\"; see examples/mixed.stream.\n";
+    text << "\nWhat --world can change, by a factor unless a unit is given:\n" << conditions_help();
     text << "\nWrites trials.csv, summary.csv, report.html and pictures (SVG, PNG; needs gnuplot)\n"
             "to DIR.\n"
             "An interrupted run resumes there: finished experiments are kept. Further policies,\n"
@@ -134,6 +155,11 @@ const char *contradiction(const Options &options)
     std::set<std::string> objects(options.objects.begin(), options.objects.end());
     if (objects.size() < options.objects.size())
         return "--object: the same one twice";
+    std::set<std::string> worlds(options.worlds.begin(), options.worlds.end());
+    if (worlds.size() < options.worlds.size())
+        return "--world: the same one twice";
+    if (!options.figure.empty() && !options.worlds.empty())
+        return "--world requires --object";
     if (options.out.empty())
         return "--out is required: a folder for the results";
     for (const Policy *policy : options.policies)
@@ -215,6 +241,10 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                         &o.cap),
         grrl_option_number("noise", "MM", "standard deviation of a tracked point (0.7)", 0.0, 100.0,
                            1.0, &o.noise_mm),
+        grrl_option_each("world", "NAME=X[,..]",
+                         "a world that differs from the default one, see below; default;\n"
+                         "or grid: many worlds",
+                         take_world, &o.worlds),
     };
     const std::string outro = help_after_options();
     const grrl_program program = {

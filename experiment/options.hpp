@@ -27,7 +27,8 @@ struct Options {
     Transport transport = Transport::MEMQ;
     int cap = 100;
     double noise_mm = 0.7;
-    std::string command; /* as typed, for the report */
+    std::vector<std::string> worlds; /* see conditions.hpp; empty: the default one */
+    std::string command;             /* as typed, for the report */
 };
 
 grrl_options_result parse_options(int argc, char **argv, Options &options);

@@ -12,6 +12,7 @@ namespace grrl_experiment
 namespace
 {
 
+constexpr const char *own_figure = "curves";
 constexpr const char *stream_suffix = ".stream";
 constexpr int paper_pretrain_trials = 50;
 constexpr const char *ablations_object = "RPRPRPR";
@@ -42,6 +43,15 @@ Course course_of(const std::string &text, int trials)
     return course;
 }
 
+/* The options were checked when they were read. */
+Conditions world_of(const Options &options, const std::string &text)
+{
+    Conditions conditions;
+    conditions.world.tracker.noise_sigma_m = options.noise_mm * 0.001;
+    (void)parse_conditions(text, conditions);
+    return conditions;
+}
+
 /* Adds the curve without pretraining and, where it makes a difference, with it. */
 void add_curves(Plan &plan, Figure &figure, const Curve &base)
 {
@@ -61,21 +71,23 @@ bool ends_with(const std::string &text, const std::string &end)
 }
 
 /* Fills in the objects of a course, and returns what is wrong with them. */
-std::string read_course(Course &course)
+std::string read_course(Course &course, const Conditions &conditions)
 {
     std::string path = grrl_sim::object_path(course.text);
     course.key = read_file(path.empty() ? course.text : path).value_or(course.text);
+    course.key += "\n" + conditions.text;
     course.stream = ends_with(course.text, stream_suffix);
     if (course.stream) {
         auto stream = grrl_sim::stream_from_file(course.text);
         if (!stream)
             return stream.error;
-        course.objects = [all = *stream.value](uint64_t seed, int32_t trial) {
-            return all.sample(grrl_sim::trial_seed(seed, trial));
+        course.objects = [all = *stream.value, scale = conditions.scale](uint64_t seed,
+                                                                         int32_t trial) {
+            return all.sample(grrl_sim::trial_seed(seed, trial), scale);
         };
         return {};
     }
-    auto object = grrl_sim::object_from_text(course.text);
+    auto object = grrl_sim::object_from_text(course.text, conditions.scale);
     if (!object)
         return course.text + ": " + object.error;
     course.objects = [only = *object.value](uint64_t, int32_t) { return only; };
@@ -85,9 +97,9 @@ std::string read_course(Course &course)
 std::string read_objects(Plan &plan)
 {
     for (Curve &curve : plan.curves) {
-        std::string error = read_course(curve.course);
+        std::string error = read_course(curve.course, curve.conditions);
         for (Course &course : curve.before)
-            error = error.empty() ? read_course(course) : error;
+            error = error.empty() ? read_course(course, curve.conditions) : error;
         if (!error.empty())
             return error;
     }
@@ -101,6 +113,7 @@ void add_figure(Plan &plan, const Options &options, const PaperFigure &paper)
     figure.title = std::string("Figure ") + paper.name + ": " + paper.object;
     Curve curve;
     curve.course = course_of(paper.object, options.trials);
+    curve.conditions = world_of(options, "default");
     if (paper.pretrain != nullptr) {
         curve.before.push_back(course_of(paper.pretrain, paper_pretrain_trials));
         figure.title += std::string(", without and with ") + std::to_string(paper_pretrain_trials) +
@@ -135,6 +148,7 @@ void add_ablations(Plan &plan, const Options &options)
     for (const Policy *policy : chosen) {
         Curve curve;
         curve.course = course_of(ablations_object, options.trials);
+        curve.conditions = world_of(options, "default");
         curve.policy = policy;
         add_curves(plan, figure, curve);
     }
@@ -157,13 +171,19 @@ void add_distance_from_bound(Plan &plan, const Figure &figure)
         plan.figures.push_back(distance);
 }
 
-void add_own(Plan &plan, const Options &options, size_t which)
+/* An object in a world, as the next figure. */
+void add_own(Plan &plan, const Options &options, const std::string &object,
+             const Conditions &conditions)
 {
     Figure figure;
-    figure.name = which == 0 ? "curves" : "curves-" + std::to_string(which + 1);
-    figure.title = options.objects[which];
     Curve curve;
-    curve.course = course_of(options.objects[which], options.trials);
+    curve.course = course_of(object, options.trials);
+    curve.conditions = conditions;
+    figure.name = own_figure;
+    if (plan.curves.size() > 0)
+        figure.name += "-" + std::to_string(plan.figures.size() + 1);
+    figure.title = curve.object();
+    figure.drawn = options.worlds.size() < 2;
     for (const std::string &pretrain : options.pretrain) {
         Course course;
         (void)split_pretrain(pretrain, course.text, course.trials);
@@ -183,6 +203,11 @@ void add_own(Plan &plan, const Options &options, size_t which)
 }
 
 } // namespace
+
+std::string Curve::object() const
+{
+    return conditions.text.empty() ? course.text : course.text + " in " + conditions.text;
+}
 
 std::string Curve::pretrain_text() const
 {
@@ -213,8 +238,12 @@ std::vector<std::string> figure_names()
 grrl_sim::Result<Plan> make_plan(const Options &options)
 {
     Plan plan;
-    for (size_t i = 0; i < options.objects.size(); i++)
-        add_own(plan, options, i);
+    std::vector<std::string> worlds = options.worlds;
+    if (worlds.empty())
+        worlds.emplace_back("default");
+    for (const std::string &object : options.objects)
+        for (const std::string &world : worlds)
+            add_own(plan, options, object, world_of(options, world));
     if (options.figure == "ablations")
         add_ablations(plan, options);
     for (const PaperFigure &figure : paper_figures())

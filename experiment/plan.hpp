@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "conditions.hpp"
 #include "policies.hpp"
 #include "result.hpp"
 #include "sides.hpp"
@@ -29,8 +30,9 @@ struct Curve {
     Course course;
     const Policy *policy = nullptr;
     std::vector<Course> before; /* one after the other; empty: none */
+    Conditions conditions;      /* of all its courses */
 
-    const std::string &object() const { return course.text; }
+    std::string object() const; /* RPRPRPR, or RPRPRPR in links=0.7 */
     int trials() const { return course.trials; }
     int all_trials() const;            /* with those before */
     std::string pretrain_text() const; /* RRRRR:50, or RRRRR:50, PRPRP:20, or none */
@@ -42,6 +44,7 @@ struct Figure {
     std::string name; /* figure-3b, or curves */
     std::string title;
     std::vector<size_t> curves;  /* of the plan */
+    bool drawn = true;           /* as a picture */
     std::optional<size_t> bound; /* shows by how much the curves lie above this one */
 };
 

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "claims.hpp"
 #include "files.hpp"
 #include "results.hpp"
 
@@ -64,6 +65,13 @@ std::string table_of(const Plan &plan, const Figure &figure,
                             100.0 * capped(rows, 1, plan.curves[c].trials()));
         html << "<td>" << share << "</td></tr>\n";
     }
+    std::vector<Experiments> rules = every_rule(plan, figure, results);
+    if (!rules.empty()) {
+        html << "<tr><td>every rule</td>";
+        for (const Range &column : columns)
+            html << "<td>" << means_text(rules, column.first, column.last) << "</td>";
+        html << "<td></td></tr>\n";
+    }
     html << "</table>\n";
     return html.str();
 }
@@ -114,6 +122,9 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
                            "the last ten (filled).</p>\n");
         html << table_of(plan, figure, results);
     }
+    std::string claims = claims_table(plan, results);
+    if (!claims.empty())
+        html << "<h2>Claims</h2>\n<pre>" << escaped(claims) << "</pre>\n";
     html << "<h2>Policies</h2>\n<table>\n";
     for (const auto *policies_of : {&policies(), &ablations()})
         for (const Policy &policy : *policies_of)

@@ -127,12 +127,40 @@ std::string mean_text(const Mean &mean, const char *plus_minus)
     return text;
 }
 
+std::string means_text(const std::vector<Experiments> &curves, int first, int last)
+{
+    if (curves.empty())
+        return "-";
+    std::vector<double> means;
+    for (const Experiments &curve : curves)
+        means.push_back(pushes(curve, first, last).mean);
+    auto ends = std::minmax_element(means.begin(), means.end());
+    char text[60];
+    if (curves.size() == 1)
+        return mean_text(pushes(curves[0], first, last), "+-");
+    (void)std::snprintf(text, sizeof text, "%.1f to %.1f", *ends.first, *ends.second);
+    return text;
+}
+
+std::vector<Experiments> every_rule(const Plan &plan, const Figure &figure,
+                                    const std::vector<Experiments> &results)
+{
+    std::vector<Experiments> rules;
+    size_t orders = 0;
+    for (const Policy &policy : policies())
+        orders += policy.is_rule ? 1 : 0;
+    for (size_t c : figure.curves)
+        if (plan.curves[c].policy->is_rule)
+            rules.push_back(shown(figure, results, c));
+    return rules.size() == orders ? rules : std::vector<Experiments>{};
+}
+
 std::string text_table(const Plan &plan, const Figure &figure,
                        const std::vector<Experiments> &results)
 {
     std::ostringstream text;
     text << figure.title << "\n";
-    size_t width = 8;
+    size_t width = 10;
     for (size_t c : figure.curves)
         width = std::max(width, curve_label(plan.curves[c], false).size());
     std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials());
@@ -162,6 +190,14 @@ std::string text_table(const Plan &plan, const Figure &figure,
                             100.0 * capped(rows, 1, plan.curves[c].trials()),
                             wrong / std::max(trials, 1.0));
         text << rest << "\n";
+    }
+    std::vector<Experiments> rules = every_rule(plan, figure, results);
+    if (!rules.empty()) {
+        text << "  ";
+        cell("every rule", width + 2);
+        for (const Range &column : columns)
+            cell(means_text(rules, column.first, column.last), 14);
+        text << "\n";
     }
     return text.str();
 }

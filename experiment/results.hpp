@@ -31,6 +31,13 @@ std::string curve_label(const Curve &curve, bool with_object);
 /* "7.2 +- 0.4" */
 std::string mean_text(const Mean &mean, const char *plus_minus);
 
+/* "4.2 to 17.1": the lowest and the highest mean of these curves, or the mean of the only one. */
+std::string means_text(const std::vector<Experiments> &curves, int first, int last);
+
+/* The rules of a figure, if it has all of their orders; else none. */
+std::vector<Experiments> every_rule(const Plan &plan, const Figure &figure,
+                                    const std::vector<Experiments> &results);
+
 /* A row for each curve of a figure. */
 std::string text_table(const Plan &plan, const Figure &figure,
                        const std::vector<Experiments> &results);

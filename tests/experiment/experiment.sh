@@ -129,6 +129,17 @@ added) # what one command does, others may do after one another
     ! cmp -s <(grep 'R:2' two/trials.csv | cut -d, -f4-) <(grep 'R:2' one/trials.csv | cut -d, -f3-) ||
         fail "the second one changes nothing"
     ;;
+worlds)
+    options=(--policy "random,rules,learn" --trials 2 --experiments 2)
+    run one --object RR --world default --world features=0.7,noise=1 --world size=0.5 "${options[@]}"
+    grep -q '^"RR in features=0.7,noise=1",rule-spa,none,2,1002,2,' one/trials.csv || fail "no world"
+    grep -q '^RR in size=0.5 .* \(yes\|NO\|unclear\)' <(sed 's/^ *//' one/claims.txt) || fail "no claim"
+    [ "$(grep -c '^  every rule ' output.txt)" -eq 3 ] || fail "no line for every rule"
+    run default --object RR "${options[@]}"
+    cmp <(grep '^RR,' one/trials.csv) <(tail -n +2 default/trials.csv) || fail "no default world"
+    ! cmp -s <(grep 'size' one/trials.csv | cut -d, -f2-) <(tail -n +2 default/trials.csv | cut -d, -f2-) ||
+        fail "another world changes nothing"
+    ;;
 stream)
     printf '%s\n' 'links 2..4 # few' 'revolute 0, 1' 'objects 1, 2' 'size 0.8..1.2' >some.stream
     options=(--stream some.stream --policy "learn,rule,clairvoyant" --trials 4 --experiments 2)
@@ -168,6 +179,13 @@ options)
     refused 'NO: ' --object RR --pretrain NO:2 --out x
     refused 'there are no arguments' --object RR --out x more
     refused '--object: the same one twice' --object RR --object RR --out x
+    refused '--world sun=1: must be default, grid or' --object RR --out x --world sun=1
+    refused '--world links=9: must be a number from 0.3 to 2 for links' --object RR --out x \
+        --world links=9
+    refused '--world: the same one twice' --object RR --out x --world grid --world links=0.7
+    refused '--world requires --object' --figure 3b --out x --world links=0.7
+    refused 'scissors: .* cannot follow links of another length' --object scissors --out x \
+        --world links=0.7
     refused '--seed 3..2: must be' --object RR --out x --seed 3..2
     refused '--seed 1..: must be' --object RR --out x --seed 1..
     refused '--stream mixed: must be a file' --stream mixed --out x

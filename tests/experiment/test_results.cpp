@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "claims.hpp"
 #include "results.hpp"
 
 extern "C" {
@@ -107,6 +108,24 @@ void the_distance_from_the_bound_is_taken_trial_by_trial(void **)
     assert_near(pushes(shown(figure, results, 0), 1, 2).mean, 1.0); /* 0, 0, 2, 2 */
 }
 
+void a_claim_needs_every_difference(void **)
+{
+    Experiments low(3);
+    Experiments high(3);
+    for (size_t e = 0; e < 3; e++) {
+        TrialRow row;
+        row.trial = 1;
+        row.pushes = static_cast<int>(e);
+        low[e].push_back(row);
+        row.pushes += 5 + static_cast<int>(e % 2);
+        high[e].push_back(row);
+    }
+    assert_string_equal(is_below({low}, {high}, 1, 1).c_str(), "yes");
+    assert_string_equal(is_below({high}, {low}, 1, 1).c_str(), "NO");
+    assert_string_equal(is_below({low}, {high, low}, 1, 1).c_str(), "unclear");
+    assert_string_equal(is_below({low, high}, {low, high}, 1, 1).c_str(), "NO");
+}
+
 void every_policy_has_a_name_of_its_own(void **)
 {
     for (const Policy &policy : policies())
@@ -154,6 +173,7 @@ int main()
         cmocka_unit_test(ranges_end_with_the_trials),
         cmocka_unit_test(csv_quotes_what_it_must),
         cmocka_unit_test(the_distance_from_the_bound_is_taken_trial_by_trial),
+        cmocka_unit_test(a_claim_needs_every_difference),
         cmocka_unit_test(every_policy_has_a_name_of_its_own),
         cmocka_unit_test(an_ablation_changes_what_it_says),
     };
