@@ -2,6 +2,7 @@
 #include "folder.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -60,6 +61,7 @@ Folder::Folder(const Options &options) : root_(options.out)
     make_folder(path("experiments"));
     lock();
     check_settings(settings_of(options));
+    write_file(path(arguments_file), shared_arguments(options));
 }
 
 Folder::~Folder()
@@ -80,9 +82,9 @@ void Folder::lock()
 
 void Folder::check_settings(const std::string &settings) const
 {
-    std::optional<std::string> known = read_file(path("settings.txt"));
+    std::optional<std::string> known = read_file(path(settings_file));
     if (!known) {
-        write_file(path("settings.txt"), settings);
+        write_file(path(settings_file), settings);
         return;
     }
     if (*known == settings)
@@ -90,6 +92,24 @@ void Folder::check_settings(const std::string &settings) const
     auto [there, here] = difference(*known, settings);
     throw std::runtime_error(root_ + " holds results with other settings: '" + there +
                              "' there, '" + here + "' here; name another folder or remove it");
+}
+
+void Folder::take(const std::string &other) const
+{
+    for (const char *name : {settings_file, arguments_file}) {
+        std::string here = read_file(path(name)).value_or("");
+        std::optional<std::string> there = read_file(other + "/" + name);
+        if (!there)
+            throw std::runtime_error(other + " is no folder of results: it has no " + name);
+        auto [its, ours] = difference(*there, here);
+        if (*there != here)
+            throw std::runtime_error(other + " holds another run: '" + its + "' there, '" + ours +
+                                     "' in the first folder or this program");
+    }
+    for (const auto &entry : std::filesystem::directory_iterator(other + "/experiments"))
+        if (entry.path().extension() == ".csv")
+            write_file(path("experiments/" + entry.path().filename().string()),
+                       read_file(entry.path()).value_or(""));
 }
 
 std::string Folder::experiment_path(const Curve &curve, uint64_t seed) const

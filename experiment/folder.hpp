@@ -19,6 +19,9 @@
 namespace grrl_experiment
 {
 
+constexpr const char *settings_file = "settings.txt";
+constexpr const char *arguments_file = "arguments.txt"; /* shared_arguments of the last command */
+
 class Folder
 {
 public:
@@ -34,6 +37,9 @@ public:
     /* Returns nullopt if the experiment with this seed is not finished. */
     std::optional<Trials> load(const Curve &curve, uint64_t seed) const;
     void save(const Curve &curve, uint64_t seed, const Trials &trials) const;
+
+    /* Copies the experiments of another folder. Throws if it was made with other settings. */
+    void take(const std::string &other) const;
 
 private:
     std::string experiment_path(const Curve &curve, uint64_t seed) const;

@@ -1,6 +1,7 @@
 /* grrl-experiment: plans the experiments, runs them in workers, and presents the results. */
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <stdexcept>
 
 #include <unistd.h>
@@ -56,14 +57,17 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     folder.save(curve, task.seed, trials);
 }
 
-/* Curves take turns, so that the remaining time can be estimated from what is done. */
-std::vector<Task> tasks_left(const Options &options, const Plan &plan, const Folder &folder)
+/* The experiments of this shard; each shard has some of every curve. Curves take turns, so that the
+ * remaining time can be estimated from what is done. */
+std::vector<Task> tasks_of(const Options &options, const Plan &plan)
 {
+    std::vector<uint64_t> seeds = experiment_seeds(options);
     std::vector<Task> tasks;
-    for (uint64_t seed : experiment_seeds(options))
+    for (size_t e = 0; e < seeds.size(); e++)
         for (size_t c = 0; c < plan.curves.size(); c++)
-            if (!folder.load(plan.curves[c], seed))
-                tasks.push_back({c, seed});
+            if ((c * seeds.size() + e) % static_cast<size_t>(options.shards) + 1 ==
+                static_cast<size_t>(options.shard))
+                tasks.push_back({c, seeds[e]});
     return tasks;
 }
 
@@ -75,11 +79,16 @@ int jobs_of(const Options &options)
 
 JobsResult run_tasks(const Options &options, const Plan &plan, const Folder &folder)
 {
-    std::vector<Task> tasks = tasks_left(options, plan, folder);
+    std::vector<Task> tasks;
+    size_t all = 0;
+    for (const Task &task : tasks_of(options, plan)) {
+        all++;
+        if (!folder.load(plan.curves[task.curve], task.seed))
+            tasks.push_back(task);
+    }
     int64_t trials = 0;
     for (const Task &task : tasks)
         trials += plan.curves[task.curve].all_trials();
-    size_t all = plan.curves.size() * experiment_seeds(options).size();
     if (tasks.size() < all)
         (void)std::fprintf(stderr, "grrl-experiment: %zu of %zu experiments are already done\n",
                            all - tasks.size(), all);
@@ -148,6 +157,44 @@ int run(const Options &options, const Plan &plan)
     case JobsResult::DONE:
         break;
     }
+    if (options.shards == 1)
+        publish(options, plan, folder);
+    return 0;
+}
+
+/* The options of the first part, which all others share. */
+grrl_options_result options_of_parts(Options &options)
+{
+    const std::string first = options.merge[0] + "/" + arguments_file;
+    std::optional<std::string> text = read_file(first);
+    if (!text)
+        throw std::runtime_error(first + ": cannot be read; name the folders of all parts");
+    std::istringstream lines(*text);
+    std::vector<std::string> words{"grrl-experiment", "--out", options.out};
+    for (std::string line; std::getline(lines, line);)
+        words.push_back(line);
+    std::vector<char *> argv;
+    for (std::string &word : words)
+        argv.push_back(word.data());
+    argv.push_back(nullptr);
+    return parse_options(static_cast<int>(words.size()), argv.data(), options);
+}
+
+int merge(const Options &options, const Plan &plan)
+{
+    Folder folder(options);
+    for (const std::string &part : options.merge)
+        folder.take(part);
+    int missing = 0;
+    std::string first;
+    for (const Task &task : tasks_of(options, plan)) {
+        const Curve &curve = plan.curves[task.curve];
+        if (!folder.load(curve, task.seed) && missing++ == 0)
+            first = curve_label(curve, true) + " with seed " + std::to_string(task.seed);
+    }
+    if (missing > 0)
+        throw std::runtime_error(std::to_string(missing) +
+                                 " experiments are missing in these parts, such as " + first);
     publish(options, plan, folder);
     return 0;
 }
@@ -161,12 +208,16 @@ int main(int argc, char **argv)
     if (parsed != GRRL_OPTIONS_RUN)
         return parsed;
     try {
+        if (!options.merge.empty())
+            parsed = options_of_parts(options);
+        if (parsed != GRRL_OPTIONS_RUN)
+            return parsed;
         grrl_sim::Result<Plan> plan = make_plan(options);
         if (!plan) {
             (void)std::fprintf(stderr, "grrl-experiment: %s\n", plan.error.c_str());
             return 2;
         }
-        return run(options, *plan.value);
+        return options.merge.empty() ? run(options, *plan.value) : merge(options, *plan.value);
     } catch (const std::exception &error) {
         (void)std::fprintf(stderr, "grrl-experiment: %s\n", error.what());
         return 1;

@@ -2,6 +2,7 @@
 #include "options.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 #include <sstream>
 
@@ -101,6 +102,21 @@ const char *take_seeds(void *context, const char *value)
     return good ? nullptr : "a whole number from 0 to 1000000000, or a range such as 1..5";
 }
 
+const char *take_shard(void *context, const char *value)
+{
+    auto &options = *static_cast<Options *>(context);
+    const std::string text = value;
+    size_t slash = std::min(text.find('/'), text.size() - 1);
+    uint64_t shard = 0;
+    uint64_t shards = 0;
+    if (!grrl_option_integer_of(text.c_str() + slash + 1, 1, 100000, &shards) ||
+        !grrl_option_integer_of(text.substr(0, slash).c_str(), 1, shards, &shard))
+        return "two whole numbers such as 3/20: part 3 of 20";
+    options.shard = static_cast<int>(shard);
+    options.shards = static_cast<int>(shards);
+    return nullptr;
+}
+
 const char *take_transport(void *context, const char *value)
 {
     const std::string text = value;
@@ -180,6 +196,32 @@ std::string command_of(int argc, char **argv)
     return command;
 }
 
+/* grrl-experiment merge --out DIR PART.. */
+grrl_options_result parse_merge(int argc, char **argv, Options &options)
+{
+    const grrl_option rows[] = {
+        grrl_option_text("out", "DIR", "folder for all results; required", &options.out),
+    };
+    const grrl_program program = {
+        "grrl-experiment",
+        "grrl-experiment merge --out DIR PART...",
+        "Joins the results of all parts of a run (--shard) to those of one run.\n",
+        nullptr,
+        100000,
+        nullptr,
+    };
+    int first = 0;
+    grrl_options_result result =
+        grrl_options_parse(&program, rows, std::size(rows), argc, argv, &first);
+    if (result != GRRL_OPTIONS_RUN)
+        return result;
+    for (int i = first; i < argc; i++)
+        options.merge.emplace_back(argv[i]);
+    if (options.out.empty() || options.merge.empty())
+        return grrl_options_wrong(&program, "give --out and the folders of all parts");
+    return result;
+}
+
 } // namespace
 
 bool split_pretrain(const std::string &text, std::string &object, int &trials)
@@ -203,9 +245,30 @@ std::vector<uint64_t> experiment_seeds(const Options &options)
     return seeds;
 }
 
+std::string shared_arguments(const Options &options)
+{
+    std::ostringstream text;
+    text.precision(15);
+    text << "--trials\n" << options.trials << "\n--experiments\n" << options.experiments;
+    text << "\n--seed\n" << options.first_seed << ".." << options.last_seed;
+    text << "\n--cap\n" << options.cap << "\n--noise\n" << options.noise_mm << "\n";
+    if (!options.figure.empty())
+        text << "--figure\n" << options.figure << "\n";
+    const std::pair<const char *, const std::vector<std::string> *> lists[] = {
+        {"object", &options.objects}, {"pretrain", &options.pretrain}, {"world", &options.worlds}};
+    for (const auto &[name, values] : lists)
+        for (const std::string &value : *values)
+            text << "--" << name << "\n" << value << "\n";
+    for (size_t i = 0; i < options.policies.size(); i++)
+        text << (i == 0 ? "--policy\n" : ",") << options.policies[i]->name;
+    return text.str() + (options.policies.empty() ? "" : "\n");
+}
+
 grrl_options_result parse_options(int argc, char **argv, Options &options)
 {
     Options &o = options;
+    if (argc > 1 && std::strcmp(argv[1], "merge") == 0)
+        return parse_merge(argc - 1, argv + 1, options);
     o.command = command_of(argc, argv);
     const grrl_option rows[] = {
         grrl_option_call("figure", "NAME", "of the paper: 3b, 4a, 4b, 4c or all; or ablations",
@@ -233,6 +296,10 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                          "experiments of each seed",
                          take_seeds, &o),
         grrl_option_int("jobs", "N", "experiments run in parallel (one per core)", 1, 256, &o.jobs),
+        grrl_option_call("shard", "I/N",
+                         "run only part I of N of the experiments, without tables and\n"
+                         "pictures; merge joins the parts",
+                         take_shard, &o),
         grrl_option_text("out", "DIR", "folder for the results; required", &o.out),
         grrl_option_call("transport", "NAME",
                          "memq: agent and simulator in one process; udpm: in two (memq)",
@@ -249,7 +316,8 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
     const std::string outro = help_after_options();
     const grrl_program program = {
         "grrl-experiment",
-        "grrl-experiment (--figure NAME | --object OBJECT) --out DIR [OPTION]...",
+        "grrl-experiment (--figure NAME | --object OBJECT) --out DIR [OPTION]...\n"
+        "       grrl-experiment merge --out DIR PART...",
         "Runs policies that discover the structure of objects over many trials, and compares\n"
         "them: learning curves with intervals, and transfer.\n",
         outro.c_str(),

@@ -28,10 +28,16 @@ struct Options {
     int cap = 100;
     double noise_mm = 0.7;
     std::vector<std::string> worlds; /* see conditions.hpp; empty: the default one */
-    std::string command;             /* as typed, for the report */
+    int shard = 1; /* of so many: this part of the experiments, without tables and pictures */
+    int shards = 1;
+    std::vector<std::string> merge; /* folders whose results are merged */
+    std::string command;            /* as typed, for the report */
 };
 
 grrl_options_result parse_options(int argc, char **argv, Options &options);
+
+/* The arguments, a line each, that all parts of a run share. parse_options understands them. */
+std::string shared_arguments(const Options &options);
 
 /* Splits OBJECT:N; false if it is something else. */
 bool split_pretrain(const std::string &text, std::string &object, int &trials);
