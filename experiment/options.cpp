@@ -130,7 +130,7 @@ const char *take_figure(void *context, const char *text)
     *static_cast<std::string *>(context) = text;
     return std::find(names.begin(), names.end(), text) != names.end()
                ? nullptr
-               : "3b, 4a, 4b, 4c, all or ablations";
+               : "3b, 4a, 4b, 4c, all, ablations or interference";
 }
 
 std::string help_after_options()
@@ -164,7 +164,7 @@ std::string help_after_options()
 /* The error in the combination of options, or nullptr. */
 const char *contradiction(const Options &options)
 {
-    if (options.objects.empty() == options.figure.empty())
+    if (options.objects.empty() == options.figure.empty() && options.figure != interference)
         return "give either --figure or --object, for example --object RPR";
     if (!options.figure.empty() && !options.pretrain.empty())
         return "--pretrain requires --object; a figure has its own";
@@ -271,7 +271,9 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
         return parse_merge(argc - 1, argv + 1, options);
     o.command = command_of(argc, argv);
     const grrl_option rows[] = {
-        grrl_option_call("figure", "NAME", "of the paper: 3b, 4a, 4b, 4c or all; or ablations",
+        grrl_option_call("figure", "NAME",
+                         "of the paper: 3b, 4a, 4b, 4c or all; ablations; or\n"
+                         "interference: each object after each other, --trials before",
                          take_figure, &o.figure),
         grrl_option_each("object", "OBJECT",
                          "or: chain (RPR), term (D(lb, R(l1, l2))), file or stream (below);\n"

@@ -6,6 +6,7 @@
 
 #include "files.hpp"
 #include "gnuplot.hpp"
+#include "matrix.hpp"
 #include "results.hpp"
 
 namespace grrl_experiment
@@ -159,10 +160,23 @@ std::string curves_script(const Plan &plan, const Figure &figure)
 bool draw(const Folder &folder, const Plan &plan, const Figure &figure,
           const std::vector<Experiments> &results)
 {
-    bool rows = figure.kind == Figure::Kind::ROWS;
-    write_file(folder.path(figure.name + ".tsv"),
-               rows ? rows_of(plan, figure, results) : data_of(plan, figure, results));
-    std::string script = rows ? rows_script(figure) : curves_script(plan, figure);
+    std::string data;
+    std::string script;
+    switch (figure.kind) {
+    case Figure::Kind::CURVES:
+        data = data_of(plan, figure, results);
+        script = curves_script(plan, figure);
+        break;
+    case Figure::Kind::ROWS:
+        data = rows_of(plan, figure, results);
+        script = rows_script(figure);
+        break;
+    case Figure::Kind::MATRIX:
+        data = matrix_data(plan, figure, results);
+        script = matrix_script(plan, figure);
+        break;
+    }
+    write_file(folder.path(figure.name + ".tsv"), data);
     write_file(folder.path(figure.name + ".gp"), script);
     return run_gnuplot(folder.path(""), script);
 }

@@ -15,6 +15,7 @@ namespace
 constexpr const char *own_figure = "curves";
 constexpr const char *stream_suffix = ".stream";
 constexpr int paper_pretrain_trials = 50;
+constexpr int matrix_trials = 5;
 constexpr const char *ablations_object = "RPRPRPR";
 
 struct PaperFigure {
@@ -155,6 +156,49 @@ void add_ablations(Plan &plan, const Options &options)
     plan.figures.push_back(figure);
 }
 
+/* Each object without experience and after each of the others and itself. */
+void add_matrix(Plan &plan, const Options &options)
+{
+    std::vector<std::string> objects = options.objects;
+    if (objects.empty())
+        objects = {"PRPRP",
+                   "PRPRPRP",
+                   "RPRPRPR",
+                   "RRRR",
+                   "RRRRR",
+                   "PRRP",
+                   "PRRRRP",
+                   "PPRRP",
+                   "RRPPRR",
+                   "R(l1, l2, l3, l4)",
+                   "R(l1, P(l2, l3), P(l4, l5), R(l6, l7))",
+                   "R(l1, R(l4, R(l3, P(l2, l1))))"};
+    std::vector<const Policy *> chosen = options.policies;
+    if (chosen.empty())
+        chosen.push_back(find_policy("learn"));
+    for (const Policy *policy : chosen) {
+        Figure figure;
+        figure.kind = Figure::Kind::MATRIX;
+        figure.name = std::string(interference) + "-" + policy->name;
+        figure.title = policy->name + ": pushes in the first " + std::to_string(matrix_trials) +
+                       " trials, with " + std::to_string(options.trials) +
+                       " trials of another object before minus without";
+        for (const std::string &then : objects) {
+            Curve curve;
+            curve.course = course_of(then, matrix_trials);
+            curve.conditions = world_of(options, "default");
+            curve.policy = policy;
+            add_curves(plan, figure, curve);
+            for (const std::string &before : objects) {
+                curve.before = {course_of(before, options.trials)};
+                figure.curves.push_back(plan.curves.size());
+                plan.curves.push_back(curve);
+            }
+        }
+        plan.figures.push_back(figure);
+    }
+}
+
 /* Where the clairvoyant ran, too, a second figure shows the distance from it. */
 void add_distance_from_bound(Plan &plan, const Figure &figure)
 {
@@ -232,6 +276,7 @@ std::vector<std::string> figure_names()
         names.push_back(figure.name);
     names.push_back("all");
     names.push_back("ablations");
+    names.push_back(interference);
     return names;
 }
 
@@ -241,9 +286,12 @@ grrl_sim::Result<Plan> make_plan(const Options &options)
     std::vector<std::string> worlds = options.worlds;
     if (worlds.empty())
         worlds.emplace_back("default");
+    if (options.figure == interference)
+        add_matrix(plan, options);
     for (const std::string &object : options.objects)
         for (const std::string &world : worlds)
-            add_own(plan, options, object, world_of(options, world));
+            if (options.figure.empty())
+                add_own(plan, options, object, world_of(options, world));
     if (options.figure == "ablations")
         add_ablations(plan, options);
     for (const PaperFigure &figure : paper_figures())

@@ -39,7 +39,9 @@ struct Curve {
 };
 
 struct Figure {
-    enum class Kind { CURVES, ROWS }; /* pushes by trial, or a row of means per curve */
+    /* Pushes by trial; a row of means per curve; or for each object the curve without pretraining
+     * and those after each of the objects. */
+    enum class Kind { CURVES, ROWS, MATRIX };
     Kind kind = Kind::CURVES;
     std::string name; /* figure-3b, or curves */
     std::string title;
@@ -53,7 +55,9 @@ struct Plan {
     std::vector<Figure> figures;
 };
 
-/* 3b, 4a, .., all (of the paper), and ablations. */
+constexpr const char *interference = "interference"; /* a figure; --object may name its objects */
+
+/* 3b, 4a, .., all (of the paper), ablations and interference. */
 std::vector<std::string> figure_names();
 
 /* An error says which object is wrong and why. */

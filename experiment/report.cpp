@@ -76,6 +76,22 @@ std::string table_of(const Plan &plan, const Figure &figure,
     return html.str();
 }
 
+const char *caption_of(Figure::Kind kind)
+{
+    switch (kind) {
+    case Figure::Kind::CURVES:
+        return "<p>Lines: means over neighbouring trials with their intervals; points: means of "
+               "one "
+               "trial. In a transfer, dashed lines are without pretraining.</p>\n";
+    case Figure::Kind::ROWS:
+        return "<p>Means with their intervals over the first five trials (hollow) and the last ten "
+               "(filled).</p>\n";
+    case Figure::Kind::MATRIX:
+        break;
+    }
+    return "<p>Paired differences; * marks those beyond their intervals.</p>\n";
+}
+
 bool is_used(const Plan &plan, const Policy &policy)
 {
     for (const Curve &curve : plan.curves)
@@ -114,13 +130,10 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
         if (picture)
             html << "<img alt=\"" << escaped(figure.title) << "\" src=\"data:image/svg+xml;base64,"
                  << base64(*picture) << "\">\n"
-                 << (figure.kind == Figure::Kind::CURVES
-                         ? "<p>Lines: means over neighbouring trials with their intervals; points: "
-                           "means of one trial. In a transfer, dashed lines are without "
-                           "pretraining.</p>\n"
-                         : "<p>Means with their intervals over the first five trials (hollow) and "
-                           "the last ten (filled).</p>\n");
-        html << table_of(plan, figure, results);
+                 << caption_of(figure.kind);
+        html << (figure.kind == Figure::Kind::MATRIX
+                     ? "<pre>" + escaped(text_table(plan, figure, results)) + "</pre>\n"
+                     : table_of(plan, figure, results));
     }
     std::string claims = claims_table(plan, results);
     if (!claims.empty())

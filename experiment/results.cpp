@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "files.hpp"
+#include "matrix.hpp"
 #include "object_stream.hpp"
 
 namespace grrl_experiment
@@ -158,6 +159,8 @@ std::vector<Experiments> every_rule(const Plan &plan, const Figure &figure,
 std::string text_table(const Plan &plan, const Figure &figure,
                        const std::vector<Experiments> &results)
 {
+    if (figure.kind == Figure::Kind::MATRIX)
+        return matrix_table(plan, figure, results);
     std::ostringstream text;
     text << figure.title << "\n";
     size_t width = 10;

@@ -71,6 +71,10 @@ figure)
         [ "$(head -c 4 figure/figure-4b.png | tail -c 3)" = PNG ] || fail "no PNG"
         grep -q 'data:image/svg+xml;base64,' figure/report.html || fail "no picture in the report"
     fi
+    run matrix --figure interference --object RR --object PR --policy learn --trials 2 --experiments 2
+    [ "$(wc -l <matrix/trials.csv)" -eq 61 ] || fail "not 2 x 3 curves of 2 x 5 trials"
+    grep -q '^PR,learn,RR:2,2,1002,5,' matrix/trials.csv || fail "no cell"
+    grep -qE '^  RR +-?[0-9.]+[*]? +-?[0-9.]+[*]? *$' output.txt || fail "no row of the matrix"
     run ablations --figure ablations --policy learn,paper-exact --trials 2 --experiments 2
     grep -q '^RPRPRPR,paper-exact,none,2,1002,2,' ablations/trials.csv || fail "no ablation"
     grep -q 'recalls only the same structure' ablations/report.html || fail "no explanation"
@@ -150,10 +154,10 @@ stream)
     [ "$(cut -d, -f6- one/objects.csv | sort -u | wc -l)" -gt 3 ] || fail "hardly any objects"
     "$BIN" "${options[@]}" --out one >output.txt 2>&1
     grep -q 'some.stream: above the clairvoyant' output.txt || fail "no distance from the bound"
-    run then --stream some.stream:3 --then PR --trials 2 --experiments 2
+    run after --stream some.stream:3 --then PR --trials 2 --experiments 2
     run pretrained --object PR --pretrain some.stream:3 --trials 2 --experiments 2
-    same then pretrained
-    grep -q '^PR,learn,some.stream:3,2,1002,2,' then/trials.csv || fail "no curve after the stream"
+    same after pretrained
+    grep -q '^PR,learn,some.stream:3,2,1002,2,' after/trials.csv || fail "no curve after the stream"
     cp some.stream before.stream
     echo 'links 2' >some.stream # another stream of this name has results of its own
     run one "${options[@]}"
@@ -168,7 +172,7 @@ options)
     refused '--policy : must be' --object RR --out x --policy ''
     refused '--trials 0: must be a whole number from 1' --object RR --out x --trials 0
     refused '--jobs -1: must be' --object RR --out x --jobs -1
-    refused '--figure 5: must be 3b, 4a, 4b, 4c, all or ablations' --figure 5 --out x
+    refused '--figure 5: must be 3b, 4a, 4b, 4c, all, ablations or interference' --figure 5 --out x
     refused '--pretrain RR: must be an object, a colon' --object RR --out x --pretrain RR
     refused '--pretrain requires --object' --figure 4a --out x --pretrain RR:2
     refused '--noise nan: must be' --object RR --out x --noise nan
