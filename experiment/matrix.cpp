@@ -113,7 +113,7 @@ std::string matrix_script(const Plan &plan, const Figure &figure)
            ":-0.5]\n"
            "set palette defined (-1 '#1666a8', 0 '#ffffff', 1 '#c8442a')\n"
            "set cbrange [-5:5]\n"
-           "set cblabel 'pushes more in the first five trials' tc rgb '#222222'\n"
+           "set cblabel 'pushes more in the first five trials' offset 1 tc rgb '#222222'\n"
            "set key off\n"
            "plot " +
            data + " using 1:2:3 with image pixels, " + data +
