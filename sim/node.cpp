@@ -172,6 +172,10 @@ void Node::begin_trial()
     command_ = {};
     decision_ = {};
     status_ = {};
+    if (config_.next_object) {
+        config_.object = config_.next_object(trial_id_);
+        supervisor_ = Supervisor(visible_structure(config_.object));
+    }
     world_ =
         std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
     if (config_.camera != nullptr)

@@ -33,6 +33,7 @@ struct TrialResult {
 
 struct NodeConfig {
     ObjectSpec object;
+    std::function<ObjectSpec(int32_t trial_id)> next_object; /* in its place, for each trial */
     WorldParams world;
     uint64_t seed = 1;
     int trials = 1; /* number of trials, not counting aborted ones */
