@@ -55,7 +55,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--mp4", metavar="FILE", type=pathlib.Path,
         help="write a film (needs matplotlib and ffmpeg), and show nothing")
     add("--trial", metavar="N", type=_number(0, 2**31 - 1, int), help="this trial of LOG only")
-    add("--speed", metavar="X", type=_number(0.1, 100, float), help="the film X times as fast (4)")
+    add("--speed", metavar="X", type=_number(0.1, 100, float), help="the film X times as fast (1)")
     add("--truth", metavar="OBJECT",
         help="lay over what grrl-sim knew: the same world, simulated again from the --object of its "
              "run and the pushes in LOG")
@@ -157,7 +157,7 @@ def _show_log(options: argparse.Namespace) -> None:
     if options.mp4 is not None:
         from .movie import write_film
 
-        write_film(run, options.mp4, title, 4.0 if options.speed is None else options.speed, truth)
+        write_film(run, options.mp4, title, 1.0 if options.speed is None else options.speed, truth)
         print(options.mp4)
     if options.html is not None:
         _replace(options.html, pack.page(pack.pack(run, title, truth=truth), title))

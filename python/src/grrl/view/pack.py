@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..plot import COLOURS
 from .run import Frame, ModelSeen, Run
 
 LENGTH_M = 0.00025  # a unit of a length, and of an angle (rad)
@@ -132,6 +133,7 @@ def page(data: bytes | None = None, title: str = "grrl-view") -> str:
     script = "\n".join((folder / name).read_text(encoding="utf-8")
                        for name in ("data.js", "draw.js", "page.js"))
     within = "" if data is None else base64.b64encode(data).decode()
+    script = script.replace("@COLOURS@", json.dumps(COLOURS))
     safe = title.replace("&", "&amp;").replace("<", "&lt;")
     for mark, value in (("@TITLE@", safe), ("@STYLE@", (folder / "page.css").read_text(encoding="utf-8")),
                         ("@SCRIPT@", script), ("@DATA@", within)):

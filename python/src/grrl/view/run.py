@@ -439,8 +439,8 @@ class Run:
                              + ", ".join(sorted({str(t.id) for t in self.trials}, key=int)))
         run = Run()
         run.trials = self.trials
-        models = min((f.model for f in frames if f.model >= 0), default=0)
-        pushes = min((f.push for f in frames if f.push >= 0), default=0)
+        models = next((i for i, m in enumerate(self.models) if m.trial == wanted), 0)
+        pushes = next((i for i, p in enumerate(self.pushes) if p.trial == wanted), 0)
         run.models = [m for m in self.models if m.trial == wanted]
         run.pushes = [p for p in self.pushes if p.trial == wanted]
         run.frames = [replace(f, t=f.t - frames[0].t, model=max(f.model - models, -1),
