@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import importlib.resources
 import json
+import re
 import struct
 import zlib
 from dataclasses import asdict
@@ -135,7 +136,6 @@ def page(data: bytes | None = None, title: str = "grrl-view") -> str:
     within = "" if data is None else base64.b64encode(data).decode()
     script = script.replace("@COLOURS@", json.dumps(COLOURS))
     safe = title.replace("&", "&amp;").replace("<", "&lt;")
-    for mark, value in (("@TITLE@", safe), ("@STYLE@", (folder / "page.css").read_text(encoding="utf-8")),
-                        ("@SCRIPT@", script), ("@DATA@", within)):
-        text = text.replace(mark, value, 1)
-    return text
+    parts = {"TITLE": safe, "STYLE": (folder / "page.css").read_text(encoding="utf-8"),
+             "SCRIPT": script, "DATA": within}
+    return re.sub("@(TITLE|STYLE|SCRIPT|DATA)@", lambda mark: parts[mark[1]], text)

@@ -99,7 +99,8 @@ function showWhere(run, frame) {
   const trial = frame && run.trials[frame.trial];
   if (!trial) return put("where", "");
   const last = run.trials[run.trials.length - 1];
-  const name = trial.id ? `trial ${trial.id} of ${last.id}` : "no supervisor";
+  const name = !trial.id ? "no supervisor" : run.live ? `trial ${trial.id}`
+    : `trial ${trial.id} of ${last.id}`;
   const over = frame === lastOf(run, frame.trial) ? trial.outcome : "";
   const push = run.pushes[frame.push];
   const pushes = push ? `push ${push.cmd}` : "before the first push";

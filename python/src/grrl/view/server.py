@@ -191,10 +191,10 @@ def live_app(run: Run, source: Source) -> web.Application:
 
 async def serve(app: web.Application, port: int, ready: Any) -> None:
     """Until it is cancelled; ready(url) is called once it answers."""
-    runner = web.AppRunner(app, access_log=None)
+    runner = web.AppRunner(app, access_log=None, shutdown_timeout=0.5)
     await runner.setup()
     try:
-        site = web.TCPSite(runner, "127.0.0.1", port, shutdown_timeout=0.5)
+        site = web.TCPSite(runner, "127.0.0.1", port)
         await site.start()
         ready(f"http://127.0.0.1:{runner.addresses[0][1]}/")
         await asyncio.Event().wait()
