@@ -14,6 +14,9 @@
 /* Of a position that went from its unit to metres and back. */
 #define ROUNDING 1e-6
 
+/* From this share on the size of a body changes, and the rigid model does not hold. */
+#define SIZE_CHANGE 0.05
+
 /* No table is as wide, in metres. */
 #define LARGE_WORLD_M 20.0
 
@@ -86,6 +89,10 @@ static void doubt_log(const struct grrl_tracks_log *log, struct grrl_warnings *w
 void grrl_doubt_input(const struct grrl_tracks *tracks, struct grrl_warnings *warnings)
 {
     doubt_lost(tracks, warnings);
+    if (tracks->n_renewed > 0)
+        grrl_warn(warnings,
+                  "%zu tracks begin where others ended: taken as the same points with new ids",
+                  tracks->n_renewed);
     doubt_log(&tracks->log, warnings);
 }
 
@@ -143,6 +150,14 @@ void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *w
                   counts->refused);
     if (percent >= 100.0 / 3.0)
         grrl_warn(warnings, "%.0f%% of the points are not used: see the dropped ones", percent);
+    for (unsigned b = 0; b < report->model->n_bodies; b++) {
+        double change = (double)grrl_perception_size_change(report->perception, (uint8_t)b);
+        if (change > SIZE_CHANGE)
+            grrl_warn(warnings,
+                      "the size of f%u changes by %.0f%%: not a plane seen from above and from one "
+                      "distance; bodies and joints are doubtful",
+                      (unsigned)report->model->body[b].number, 100.0 * change);
+    }
     if (report->model->n_bodies == GRRL_MAX_LINKS)
         grrl_warn(warnings, "%d bodies are all this build holds; there may be more",
                   GRRL_MAX_LINKS);

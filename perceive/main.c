@@ -11,6 +11,7 @@
 #include "handle.h"
 #include "motion.h"
 #include "options.h"
+#include "pace.h"
 #include "report.h"
 #include "tracks.h"
 
@@ -21,6 +22,9 @@ enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 3
 
 /* Links from this length on are called large; as for the learner. */
 #define LARGE_M 0.15f
+
+/* A body whose size changes by this share is no plane that a camera sees from one distance. */
+#define SIZE_CHANGE 0.05f
 
 /* A pixel is given to the library as a millimetre. */
 static const float pixel_m = 0.001f;
@@ -171,13 +175,16 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 /*
  * The recording as pushes: frames at rest are averaged, others become keyframes where something has
  * moved enough. What was believed after a push counts in what is believed after the next, as it
- * does in the agent. The last frame shows where all has come to lie. Ends early where there are
- * more tracks than the library holds.
+ * does in the agent. The last frame shows where all has come to lie; of two pictures nobody saw
+ * the push between them. Ends early where there are more tracks than the library holds.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
+    static const struct grrl_frame unseen = {0};
     for (size_t i = 0; i < tracks->n_frames; i++) {
         struct grrl_frame frame = frame_of(tracks, i);
+        if (i == 1 && tracks->n_frames == 2 && tracks->frame[i].pushing)
+            grrl_perception_observe(&perception, &unseen, true);
         bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
         grrl_perception_observe(&perception, &frame, pushing);
         if (perception.counts.overflow > 0)
@@ -256,8 +263,8 @@ static int report_model(const struct grrl_perceive_options *options,
                                  .per_metre = per_metre,
                                  .noise = (double)perception.config.noise_m * per_metre,
                                  .frames = (unsigned)tracks->n_frames,
-                                 .tracks =
-                                     (unsigned)(grrl_tracks_count_ids(tracks) + tracks->left_out.n),
+                                 .tracks = (unsigned)(grrl_tracks_count_ids(tracks) +
+                                                      tracks->left_out.n + tracks->n_renewed),
                                  .keyframes = perception.counts.keyframes_high,
                                  .y_down = strcmp(unit.name, "px") == 0};
     bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
@@ -271,6 +278,46 @@ static int report_model(const struct grrl_perceive_options *options,
         return EXIT_INPUT;
     (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
+}
+
+/* Whether the size of a body changes by so much that rigid bodies do not hold. */
+static bool sizes_change(void)
+{
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    for (uint8_t b = 0; b < model->n_bodies; b++)
+        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
+            return true;
+    return false;
+}
+
+static unsigned unassigned(const struct grrl_model *model)
+{
+    unsigned n = 0;
+    for (uint16_t i = 0; i < model->n_features; i++)
+        n += model->feature_body[i] == GRRL_FEATURE_NONE;
+    return n;
+}
+
+/*
+ * Before a camera that zooms, or that something nears, a rigid body falls into slices. Once more
+ * with bodies that may grow; that holds if it explains no fewer points with fewer bodies.
+ */
+static enum grrl_status observe_growing(const struct grrl_perception_config *config,
+                                        const struct grrl_tracks *tracks)
+{
+    static struct grrl_perception rigid;
+    struct grrl_perception_config growing = *config;
+    if (config->static_background || !sizes_change())
+        return GRRL_OK;
+    rigid = perception;
+    growing.sizes_change = true;
+    enum grrl_status status = grrl_perception_init(&perception, &growing);
+    status = status == GRRL_OK ? observe(tracks) : status;
+    if (status != GRRL_OK ||
+        grrl_perception_model(&perception)->n_bodies >= grrl_perception_model(&rigid)->n_bodies ||
+        unassigned(grrl_perception_model(&perception)) > unassigned(grrl_perception_model(&rigid)))
+        perception = rigid;
+    return GRRL_OK;
 }
 
 /* More tracks than the library holds: once more, with those that tell most. */
@@ -291,6 +338,8 @@ static int perceive_with(const struct grrl_perception_config *config,
     status = status == GRRL_OK ? observe(tracks) : status;
     if (perception.counts.overflow > 0)
         status = observe_chosen(config, tracks);
+    if (status == GRRL_OK)
+        status = observe_growing(config, tracks);
     if (status == GRRL_ERR_NONE && perception.counts.refused > 0)
         return fail("every point lies too far from the origin: pixels or millimetres? See --unit");
     if (status == GRRL_ERR_NONE)
@@ -314,7 +363,12 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
     } else {
         struct grrl_perception_config config = configure(options, unit, &profile);
         to_metres(&tracks, unit);
-        if (!options->noise_from_points || measure_noise(&tracks, &config.noise_m))
+        if (options->noise_from_points && !measure_noise(&tracks, &config.noise_m))
+            result = EXIT_INPUT;
+        else if (!grrl_tracks_join_renewed(&tracks, config.noise_m) ||
+                 !grrl_pace_configure(&tracks, &config))
+            result = fail("out of memory");
+        else
             result = perceive_with(&config, options, &tracks, unit, profile);
     }
     grrl_tracks_free(&tracks);

@@ -35,6 +35,9 @@ struct grrl_report {
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair);
 
+/* Why they are undetermined, in words; empty: they are not. */
+const char *grrl_report_reason(const struct grrl_pair *pair);
+
 /* Of the points with a position in the input, those that are not used: lost, of tracks left out,
  * outliers and refused ones. */
 double grrl_report_dropped_percent(const struct grrl_report *report);

@@ -74,10 +74,10 @@ static void print_pairs(FILE *file, const struct grrl_report *report)
             (void)fprintf(file,
                           "%s    {\"a\": \"f%u\", \"b\": \"f%u\", \"relation\": \"%s\", "
                           "\"p_revolute\": %.6g, \"p_prismatic\": %.6g, "
-                          "\"p_disconnected\": %.6g}",
+                          "\"p_disconnected\": %.6g, \"reason\": \"%s\"}",
                           separator, (unsigned)body[a].number, (unsigned)body[b].number, relation,
                           (double)pair.p_revolute, (double)pair.p_prismatic,
-                          (double)pair.p_disconnected);
+                          (double)pair.p_disconnected, grrl_report_reason(&pair));
             separator = ",\n";
         }
     }

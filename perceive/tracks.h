@@ -1,8 +1,8 @@
 /*
  * tracks.h: a recording of tracked points in memory, read from CSV or from an LCM log.
  *
- * Order of calls: grrl_tracks_read_csv or grrl_tracks_read_log, perhaps grrl_tracks_choose, then
- * the frames, then grrl_tracks_free.
+ * Order of calls: grrl_tracks_read_csv or grrl_tracks_read_log, perhaps grrl_tracks_join_renewed
+ * and grrl_tracks_choose, then the frames, then grrl_tracks_free.
  */
 #ifndef GRRL_PERCEIVE_TRACKS_H
 #define GRRL_PERCEIVE_TRACKS_H
@@ -61,6 +61,7 @@ struct grrl_tracks {
     bool in_pixels; /* the columns were x_px and y_px */
     struct grrl_tracks_lost lost;
     struct grrl_tracks_left_out left_out;
+    size_t n_renewed;           /* ids that grrl_tracks_join_renewed has replaced by earlier ones */
     struct grrl_tracks_log log; /* all zero for a CSV file */
 };
 
@@ -92,6 +93,14 @@ bool grrl_tracks_read_log(const char *path, int32_t trial, struct grrl_tracks *t
  * memory is short. Cost: a sort of all points.
  */
 bool grrl_tracks_drop_lost(struct grrl_tracks *tracks);
+
+/*
+ * Gives tracks that begin where others ended the ids of those: the marks of a tracker that detects
+ * anew (renewed.c has the rules). Only where the whole recording shows it. noise: the standard
+ * deviation of a point, in the unit of the positions. false: memory is short. Cost: a sort of all
+ * points.
+ */
+bool grrl_tracks_join_renewed(struct grrl_tracks *tracks, float noise);
 
 /*
  * Leaves at most `most` tracks: of the longer ones, evenly over the picture (choose.c). The same

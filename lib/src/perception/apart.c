@@ -24,6 +24,8 @@
  * off tells that bodies moved apart, one at 30 tells no more. */
 #define APART_CAP 100.0f
 
+#define FEW_FRAMES 3 /* as many as a keyframe of a push has */
+
 #define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
 
 static float at_most(float x, float cap)
@@ -42,11 +44,11 @@ static float saved_apart(const struct grrl_perception *p, const struct grrl_rigi
         if (w == 0)
             continue;
         struct grrl_vec2 point = p->keyframe[k].point[slot];
-        struct grrl_pose own = p->pose[k][p->body_of[slot] == a ? a : b].pose;
+        const struct grrl_perception_pose *own = &p->pose[k][p->body_of[slot] == a ? a : b];
         float scale = 1.0f / grrl_perception_variance(p, w);
-        struct grrl_vec2 in_both = grrl_transform(together->pose[k].pose, together->shape[slot]);
+        struct grrl_vec2 in_both = grrl_to_world(&together->pose[k], together->shape[slot]);
         float as_one = scale * grrl_vec2_distance2(point, in_both);
-        float alone = scale * grrl_vec2_distance2(point, grrl_transform(own, p->shape[slot]));
+        float alone = scale * grrl_vec2_distance2(point, grrl_to_world(own, p->shape[slot]));
         saved += at_most(as_one, APART_CAP) - at_most(alone, APART_CAP);
     }
     return saved;
@@ -92,10 +94,11 @@ static void include(float interval[2], float x)
 }
 
 /* Pose of b in the frame of a. */
-static struct grrl_pose relative_pose(struct grrl_pose a, struct grrl_pose b)
+static struct grrl_pose relative_pose(const struct grrl_perception_pose *a,
+                                      const struct grrl_perception_pose *b)
 {
-    return (struct grrl_pose){grrl_unrotate(a, grrl_vec2_sub(b.p, a.p)), a.c * b.c + a.s * b.s,
-                              a.c * b.s - a.s * b.c};
+    return (struct grrl_pose){grrl_origin_in(a, b), a->pose.c * b->pose.c + a->pose.s * b->pose.s,
+                              a->pose.c * b->pose.s - a->pose.s * b->pose.c};
 }
 
 /* The larger variances of a relative pose so far and in one keyframe. */
@@ -112,6 +115,30 @@ static void include_noise(const struct grrl_perception *p, const struct grrl_per
     range->shift_var = shift > range->shift_var ? shift : range->shift_var;
 }
 
+/* Frames averaged in a keyframe, at most. */
+static uint8_t frames_of(const struct grrl_perception_keyframe *key, uint16_t n_slots)
+{
+    uint8_t most = 0;
+    for (uint16_t i = 0; i < n_slots; i++)
+        most = key->weight[i] > most ? key->weight[i] : most;
+    return most;
+}
+
+/*
+ * Whether what moved apart is told from rest to rest: two rests saw both, and more frames were
+ * averaged in them than in a push. Where nobody told when things were at rest, a link is missing in
+ * the first or the last picture, or a motion comes back, all keyframes tell.
+ */
+static bool rests_tell_alone(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    unsigned rests = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        if (p->keyframe[k].at_rest && p->pose[k][a].weight > 0.0f && p->pose[k][b].weight > 0.0f &&
+            frames_of(&p->keyframe[k], p->n_slots) > FEW_FRAMES)
+            rests++;
+    return rests >= 2;
+}
+
 struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p, uint8_t a,
                                                  uint8_t b)
 {
@@ -122,12 +149,14 @@ struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p
     struct grrl_vec2 middle = {0};
     struct grrl_apart_range range = {0};
     bool begun = false;
+    bool rests_alone = rests_tell_alone(p, a, b);
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         const struct grrl_perception_pose *pa = &p->pose[k][a];
         const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!p->keyframe[k].at_rest || !(pa->weight > 0.0f) || !(pb->weight > 0.0f))
+        if ((rests_alone && !p->keyframe[k].at_rest) || !(pa->weight > 0.0f) ||
+            !(pb->weight > 0.0f))
             continue;
-        struct grrl_pose r = relative_pose(pa->pose, pb->pose);
+        struct grrl_pose r = relative_pose(pa, pb);
         if (!begun) {
             begun = true;
             reference = r;
@@ -180,6 +209,12 @@ bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
     if (!grrl_assign_bodies_may_share(p, a, b))
         return false;
     return !far || grrl_apart_evidence(p, a, b) < MERGE_EVIDENCE * p->config.slack;
+}
+
+bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    struct grrl_apart_range range = grrl_apart_range_between(p, a, b);
+    return !is_far(p, &range);
 }
 
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b)

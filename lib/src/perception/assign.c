@@ -96,7 +96,7 @@ static bool stays_close(const struct grrl_perception *p, uint16_t slot)
     float n = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         if (p->keyframe[k].weight[slot] > 0 && p->pose[k][body].weight > 0.0f) {
-            struct grrl_vec2 at = grrl_transform(p->pose[k][body].pose, p->shape[slot]);
+            struct grrl_vec2 at = grrl_to_world(&p->pose[k][body], p->shape[slot]);
             sum += grrl_vec2_distance2(p->keyframe[k].point[slot], at);
             n += 1.0f;
         }
@@ -117,6 +117,17 @@ static bool excess_in(const struct grrl_perception *p, uint16_t slot, uint8_t bo
         grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
     *excess = cost - cost_limit(p, n) - (is_own ? OWN_COST : 0.0f);
     return n > 0;
+}
+
+bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body)
+{
+    struct grrl_vec2 local;
+    uint16_t n;
+    if (!grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local))
+        return false;
+    float cost =
+        grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
+    return n >= 2 && cost < cost_limit(p, n);
 }
 
 uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)

@@ -13,7 +13,7 @@
 
 /* Misfit above which a body is split, in standard deviations of chi squared. Noise alone lets a
  * body of ten features exceed it in one of 2,700 keyframes, in one of 57 trials of 48 keyframes. A
- * split without a cause costs time only: merge_bodies undoes it. */
+ * split without a cause costs time only: the merges undo it. */
 #define SPLIT_SIGMAS 4.5f
 
 /* Chi squared by which another cut must be better: what three parameters (MERGE_FREE) save by
@@ -58,11 +58,13 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-static void merge_bodies(struct grrl_perception *p)
+/* Makes one of all pairs of bodies of which `are_one` says so. */
+static void merge_where(struct grrl_perception *p,
+                        bool (*are_one)(const struct grrl_perception *, uint8_t, uint8_t))
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (!grrl_apart_may_merge(p, a, b))
+            if (!are_one(p, a, b))
                 continue;
             for (uint16_t i = 0; i < p->n_slots; i++)
                 if (p->body_of[i] == b)
@@ -72,6 +74,14 @@ static void merge_bodies(struct grrl_perception *p)
             b = a; /* the merged body may now fit one that was passed over */
         }
     }
+}
+
+/* Two blobs at rest that lie apart may be one link on which few features show. They are if another
+ * turns against both about the same point: links on two joints have two. */
+static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
+           grrl_structure_turn_as_one(p, a, b);
 }
 
 static bool reassign_once(struct grrl_perception *p)
@@ -192,6 +202,31 @@ static void cut_all_anew(struct grrl_perception *p)
             cut_anew(p, a, b);
 }
 
+/*
+ * A body outlives its features. Where tracks are short, those that the reference keyframe of a
+ * consensus did not see took no part in it; they join while they move with the body as far as it is
+ * known, which tells where it is in further keyframes.
+ */
+static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t *slots, uint16_t n,
+                        const float *score)
+{
+    uint8_t reference;
+    bool gained = grrl_consensus_reference(p, slots, n, score, &reference);
+    while (gained) {
+        gained = false;
+        for (uint16_t i = 0; i < n; i++) {
+            if (p->body_of[slots[i]] == GRRL_FEATURE_NONE &&
+                p->keyframe[reference].weight[slots[i]] == 0 &&
+                grrl_assign_follows(p, slots[i], body)) {
+                p->body_of[slots[i]] = body;
+                gained = true;
+            }
+        }
+        if (gained)
+            fit_body(p, body);
+    }
+}
+
 /* Splits body `body` if a part of it moved apart from the rest. */
 static void split_body(struct grrl_perception *p, uint8_t body)
 {
@@ -210,6 +245,7 @@ static void split_body(struct grrl_perception *p, uint8_t body)
     for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
     fit_body(p, body);
+    extend_body(p, body, slots, n, score);
 }
 
 /* Bodies among the features that belong to none: what splitting left over, and what the background
@@ -236,6 +272,7 @@ static bool adopt_strays(struct grrl_perception *p)
         p->body_of[members[i]] = body;
     grrl_bodies_add(p);
     fit_body(p, body);
+    extend_body(p, body, slots, n, score);
     return true;
 }
 
@@ -254,7 +291,7 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
             uint8_t w = p->keyframe[k].weight[i];
             if (w > 0 && p->pose[k][body].weight > 0.0f) {
                 float d2 = grrl_vec2_distance2(p->keyframe[k].point[i],
-                                               grrl_transform(p->pose[k][body].pose, p->shape[i]));
+                                               grrl_to_world(&p->pose[k][body], p->shape[i]));
                 sum += 0.5f * (d2 < most ? d2 : most) - grrl_perception_variance(p, w);
                 n += 1.0f;
             }
@@ -267,6 +304,7 @@ void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0)
         grrl_initial_segmentation(p);
+    p->rest_error_m = grrl_rest_error(p);
     for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = grrl_assign_moves(p, i);
     fit_all(p);
@@ -280,10 +318,11 @@ void grrl_bodies_update(struct grrl_perception *p)
     while (adopt_strays(p)) { /* what the background gave up */
     }
     dissolve_small(p);
-    merge_bodies(p);
+    merge_where(p, grrl_apart_may_merge);
     cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
+    merge_where(p, are_one_link_at_rest);
     give_back_the_table(p);
     dissolve_redundant(p);
     drop_empty(p);

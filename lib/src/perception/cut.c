@@ -72,8 +72,7 @@ static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl
     if (weight == 0 || !(t->pose[k].weight > 0.0f))
         return one;
     struct grrl_vec2 q = t->shape[slot];
-    struct grrl_vec2 d =
-        grrl_vec2_sub(grrl_untransform(t->pose[k].pose, p->keyframe[k].point[slot]), q);
+    struct grrl_vec2 d = grrl_vec2_sub(grrl_to_local(&t->pose[k], p->keyframe[k].point[slot]), q);
     float reach = p->config.jump_m;
     if (grrl_vec2_dot(d, d) > reach * reach)
         return one;

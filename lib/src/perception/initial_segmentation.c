@@ -16,12 +16,34 @@
 
 #define LEAST_M2 1e-9f /* added to squared distances (0.03 mm) before their logarithm is taken */
 
-/* Squared distance from slot i to its second nearest neighbour in the first keyframe. */
-static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
+#define APART_M2 1e9f /* of features that no keyframe saw together */
+
+/* Squared distance of two features at first sight: in the first keyframe that saw both. */
+static float first_distance2(const struct grrl_perception *p, uint16_t i, uint16_t j)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
-    float nearest = 1e9f;
-    float second = 1e9f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_keyframe *key = &p->keyframe[k];
+        if (key->weight[i] > 0 && key->weight[j] > 0)
+            return grrl_vec2_distance2(key->point[i], key->point[j]);
+    }
+    return APART_M2;
+}
+
+/* The first keyframe that saw a feature; n_keyframes: none did. */
+static uint8_t first_keyframe(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t k = 0;
+    while (k < p->n_keyframes && p->keyframe[k].weight[slot] == 0)
+        k++;
+    return k;
+}
+
+/* Squared distance from slot i, seen first in keyframe k, to its second nearest neighbour there. */
+static float neighbour_distance2(const struct grrl_perception *p, uint16_t i, uint8_t k)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[k];
+    float nearest = APART_M2;
+    float second = APART_M2;
     for (uint16_t j = 0; j < p->n_slots; j++) {
         if (j == i || key->weight[j] == 0)
             continue;
@@ -38,8 +60,7 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
 
 static void sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n;
-         i++) { /* insertion sort: once an object, GRRL_MAX_FEATURES values */
+    for (uint16_t i = 1; i < n; i++) { /* insertion sort: once an object */
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -79,16 +100,34 @@ static float object_reach(float *distance2, uint16_t n)
 /* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
 static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach2, uint8_t blob)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
     uint16_t queue[GRRL_MAX_FEATURES];
     uint16_t n = 1;
     queue[0] = start;
     p->blob_of[start] = blob;
     for (uint16_t next = 0; next < n; next++) {
         for (uint16_t j = 0; j < p->n_slots; j++) {
-            if (p->blob_of[j] == 0 && key->weight[j] > 0 &&
-                grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < reach2) {
+            if (p->blob_of[j] == 0 && first_distance2(p, queue[next], j) < reach2) {
                 p->blob_of[j] = blob;
+                queue[n++] = j;
+            }
+        }
+    }
+    return n;
+}
+
+/* How many features of a body hang together with `start`; reached[] marks them. */
+static uint16_t grow_in_body(const struct grrl_perception *p, uint8_t body, uint16_t start,
+                             bool *reached)
+{
+    uint16_t queue[GRRL_MAX_FEATURES];
+    uint16_t n = 1;
+    queue[0] = start;
+    reached[start] = true;
+    for (uint16_t next = 0; next < n; next++) {
+        for (uint16_t j = 0; j < p->n_slots; j++) {
+            if (p->body_of[j] == body && !reached[j] &&
+                first_distance2(p, queue[next], j) < p->reach2_m2) {
+                reached[j] = true;
                 queue[n++] = j;
             }
         }
@@ -98,27 +137,11 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
 
 bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
     bool reached[GRRL_MAX_FEATURES] = {false};
-    uint16_t queue[GRRL_MAX_FEATURES];
-    for (uint16_t start = 0; start < p->n_slots; start++) {
-        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0)
-            continue;
-        uint16_t n = 1;
-        queue[0] = start;
-        reached[start] = true;
-        for (uint16_t next = 0; next < n; next++) {
-            for (uint16_t j = 0; j < p->n_slots; j++) {
-                if (p->body_of[j] == body && !reached[j] && key->weight[j] > 0 &&
-                    grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
-                    reached[j] = true;
-                    queue[n++] = j;
-                }
-            }
-        }
-        if (n >= p->config.min_features)
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body && !reached[i] &&
+            grow_in_body(p, body, i, reached) >= p->config.min_features)
             return true;
-    }
     return false;
 }
 
@@ -138,7 +161,7 @@ static void find_blobs(struct grrl_perception *p)
 {
     uint8_t n = 0;
     for (uint16_t i = 0; i < p->n_slots && n < GRRL_MAX_LINKS; i++) {
-        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0)
+        if (p->blob_of[i] != 0)
             continue;
         uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(n + 1));
         bool is_body = size >= p->config.min_features + 1;
@@ -157,8 +180,9 @@ void grrl_initial_segmentation(struct grrl_perception *p)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         p->body_of[i] = p->config.static_background ? GRRL_FEATURE_BACKGROUND : 0;
         p->blob_of[i] = p->config.static_background ? 0 : 1;
-        if (p->keyframe[0].weight[i] > 0)
-            values[n++] = neighbour_distance2(p, i);
+        uint8_t k = first_keyframe(p, i);
+        if (k < p->n_keyframes)
+            values[n++] = neighbour_distance2(p, i, k);
     }
     if (!p->config.static_background) {
         grrl_bodies_add(p);

@@ -38,6 +38,16 @@
  * side on the table are rather joined than not. */
 #define JOINT_PRIOR 2.0f
 
+/* And before a camera that may move, where what is seen need not be one thing: independent until
+ * proven joined. Odds of 20 to 1 against a joint that nothing has tested. */
+#define INDEPENDENT_PRIOR (-6.0f)
+
+/* Bodies whose sizes change against one another by this share do not lie in one plane. */
+#define SIZES_DIFFER 0.1f
+
+/* A joint less likely than this is not believed: it is no joint of the model. */
+#define BELIEVED 0.5f
+
 /* A common turn counts so much for a slide at most: it leaves odds of 3 million to 1, more would
  * only hide what later pushes say. */
 #define TURN_EVIDENCE_MAX 30.0f
@@ -59,10 +69,6 @@
 /* Chi squared better than untied motion; more makes no joint likelier than another (odds of 20 to
  * 1). */
 #define WELL_SUPPORTED 6.0f
-
-/* Distance from its bodies, in units of gap_m, that costs a joint 1 in the order: 40 mm, the width
- * of a link. */
-#define ORDER_SCALE 0.4f
 
 /* A range of motion tells a type if it is so many standard deviations of one keyframe, see
  * FAR_SIGMAS in apart.c. */
@@ -107,7 +113,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
         struct relative *r = &motion->at[motion->n++];
         r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
         r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
-        r->d = grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p));
+        r->d = grrl_origin_in(pa, pb);
         r->pa = pa;
         r->pb = pb;
         c += r->c;
@@ -123,7 +129,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
 static float point_variance(const struct grrl_perception *p, const struct motion *motion,
                             const struct relative *r, float lever_a2, float lever_b2)
 {
-    float model = p->config.model_error_m;
+    float model = grrl_perception_model_error(p);
     return motion->noise2 * (1.0f / r->pa->weight + 1.0f / r->pb->weight +
                              0.5f * (lever_a2 / (r->pa->inertia + LEAST_INERTIA) +
                                      lever_b2 / (r->pb->inertia + LEAST_INERTIA))) +
@@ -134,7 +140,8 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
                            const struct relative *r)
 {
     /* the model error of a body's n features acts on its turn like noise of one frame each */
-    float model2 = p->config.model_error_m * p->config.model_error_m;
+    float model = grrl_perception_model_error(p);
+    float model2 = model * model;
     return (motion->noise2 + 4.0f * model2) *
                (1.0f / (r->pa->inertia + LEAST_INERTIA) + 1.0f / (r->pb->inertia + LEAST_INERTIA)) +
            motion->bend_a * r->pa->weight / (r->pa->inertia + LEAST_INERTIA) +
@@ -152,19 +159,6 @@ static float turn_from_mean(const struct motion *motion, const struct relative *
 static bool is_doubtful(const struct motion *motion, uint8_t k, float chi2)
 {
     return !motion->at_rest[k] && chi2 > MOVING_MISS_MAX;
-}
-
-/* Half the extent of a body's features. */
-static float half_extent(const struct grrl_perception *p, uint8_t body)
-{
-    float far2 = 0.0f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            float d2 = grrl_vec2_dot(p->shape[i], p->shape[i]);
-            far2 = d2 > far2 ? d2 : far2;
-        }
-    }
-    return grrl_sqrt(far2);
 }
 
 /* Sums over the keyframes, each weighted by 1 / variance of the distance of the two pivots. */
@@ -391,61 +385,6 @@ static float free_cost(const struct grrl_perception *p, const struct motion *mot
     return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
 }
 
-/* The distance from a point in a body's frame to its third nearest feature: a few features beside
- * a joint may be counted to the wrong body. */
-static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
-{
-    float nearest2[3] = {1e9f, 1e9f, 1e9f};
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
-            float d2 = grrl_vec2_dot(d, d);
-            for (int at = 0; at < 3; at++) {
-                if (d2 < nearest2[at]) {
-                    float t = nearest2[at];
-                    nearest2[at] = d2;
-                    d2 = t;
-                }
-            }
-        }
-    }
-    return grrl_sqrt(nearest2[2]);
-}
-
-/* Distance between the nearest features of two bodies in keyframe k. */
-static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
-{
-    const struct grrl_perception_pose *pb = &p->pose[k][b];
-    const struct grrl_perception_pose *pa = &p->pose[k][a];
-    float best = 1e9f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == b) {
-            struct grrl_vec2 world = grrl_transform(pb->pose, p->shape[i]);
-            float d = distance_to_body(p, a, grrl_untransform(pa->pose, world));
-            best = d < best ? d : best;
-        }
-    }
-    return best;
-}
-
-/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
- */
-static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
-{
-    float gap = p->config.gap_m;
-    if (e->type == GRRL_REVOLUTE) {
-        return distance_to_body(p, e->a, e->fit.in_a) < gap &&
-               distance_to_body(p, e->b, e->fit.in_b) < gap;
-    }
-    gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
-        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
-            return false;
-    }
-    return true;
-}
-
 /*
  * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
  * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
@@ -510,10 +449,16 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
  * likely as the joint but for what the motion tells beyond first order.
  */
 static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
-                         const struct grrl_joint_fit *fit, bool turns, float free)
+                         const struct grrl_joint_evidence *e, float free)
 {
-    float tested = turns ? curvature_evidence(p, motion, fit) : sliding_evidence(p, motion, fit);
-    float untested = fit->excess + tested + JOINT_PRIOR;
+    const struct grrl_joint_fit *fit = &e->fit;
+    bool table = p->config.static_background;
+    bool turns = e->type == GRRL_REVOLUTE;
+    float tested = turns   ? curvature_evidence(p, motion, fit)
+                   : table ? sliding_evidence(p, motion, fit)
+                           : grrl_joint_slide_in_pictures(p, e);
+    tested += turns && !table ? grrl_joint_place_evidence(p, e) : 0.0f;
+    float untested = fit->excess + tested + (table ? JOINT_PRIOR : INDEPENDENT_PRIOR);
     return free < untested ? free : untested;
 }
 
@@ -531,17 +476,21 @@ static void model_probabilities(const float *chi2, float *probability)
         probability[i] /= sum;
 }
 
-/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
-static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+/*
+ * Whether two bodies keep their sizes against one another. In one plane seen from above they do,
+ * whatever the camera does; what nears the camera alone is on no joint of that plane.
+ */
+static bool sizes_agree(const struct motion *motion)
 {
-    float scale = ORDER_SCALE * p->config.gap_m;
-    float da = distance_to_body(p, e->a, e->fit.in_a);
-    float db = distance_to_body(p, e->b, e->fit.in_b);
-    if (e->type == GRRL_PRISMATIC) {
-        da = gap_between(p, e->a, e->b, (uint8_t)(p->n_keyframes - 1));
-        db = 0.0f;
+    float least = 1e9f;
+    float most = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float ratio = (1.0f + r->pb->growth) / (1.0f + r->pa->growth);
+        least = ratio < least ? ratio : least;
+        most = ratio > most ? ratio : most;
     }
-    return (da * da + db * db) / (scale * scale);
+    return most - least < SIZES_DIFFER * most;
 }
 
 /* Weighs the evidence for a joint between a and b; false: none is supported. */
@@ -552,9 +501,11 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     struct grrl_joint_fit revolute;
     struct grrl_joint_fit prismatic;
     collect(p, a, b, &motion);
+    e->told = false;
+    e->doubt = GRRL_REASON_LITTLE;
     if (motion.n < 2)
         return false;
-    fit_revolute(p, &motion, half_extent(p, a), half_extent(p, b), &revolute);
+    fit_revolute(p, &motion, grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);
     float free = free_cost(p, &motion);
     bool is_revolute = revolute.excess < prismatic.excess;
@@ -564,13 +515,21 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    float untied = untied_cost(p, &motion, &e->fit, is_revolute, free);
+    float untied = untied_cost(p, &motion, e, free);
     float chi2[3] = {revolute.excess, prismatic.excess, untied};
     model_probabilities(chi2, e->p);
     float support = untied - e->fit.excess;
     float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
-    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e) - misfit;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) -
+               grrl_joint_distance_cost(p, e) - misfit;
     bool fits = e->fit.excess < MISFIT_BASE + 2.0f * MISFIT_SIGMAS * grrl_sqrt((float)motion.n);
-    return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
-           is_near(p, e);
+    e->doubt = !e->fit.excited                                        ? GRRL_REASON_LITTLE
+               : !sizes_agree(&motion)                                ? GRRL_REASON_SIZES
+               : !fits || e->odds <= TYPE_MARGIN                      ? GRRL_REASON_NO_TYPE
+               : e->weight <= TYPE_MARGIN || e->p[e->type] < BELIEVED ? GRRL_REASON_UNPROVEN
+                                                                      : GRRL_REASON_NONE;
+    e->told = e->doubt == GRRL_REASON_NONE;
+    if (e->told && !grrl_joint_is_near(p, e, support))
+        e->doubt = GRRL_REASON_FAR;
+    return e->doubt == GRRL_REASON_NONE;
 }

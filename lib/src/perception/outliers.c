@@ -25,8 +25,7 @@ static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
     uint8_t weight = p->keyframe[k].weight[slot];
     if (weight == 0 || !(pose->weight > 0.0f))
         return false;
-    float d2 =
-        grrl_vec2_distance2(p->keyframe[k].point[slot], grrl_transform(pose->pose, p->shape[slot]));
+    float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot], grrl_to_world(pose, p->shape[slot]));
     return d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 

@@ -9,9 +9,10 @@ enum {
     /* Averaged into one rest. The noise of their mean is 0.0007 / sqrt(60) = 0.00009 m: what limits
      * after that is the model error (0.0001 m). */
     REST_FRAMES_MAX = 60,
-    /* Averaged into one keyframe of a push: enough that an outlier is outvoted two to one, few
-     * enough that the mean of points on a bent path stays near the path. */
-    MOVING_FRAMES = 3,
+    /* Averaged into one keyframe of a push unless the configuration says otherwise: enough that an
+     * outlier is outvoted two to one, few enough that the mean of points on a bent path stays near
+     * the path. */
+    PUSH_FRAMES = 3,
     /* A point that stays away this long is another feature: five outliers in a row befall a feature
      * with 2% outliers once in 3 * 10^8 frames. */
     JUMPS_UNTIL_NEW = 5,
@@ -20,6 +21,9 @@ enum {
     /* In a push features count if they were seen in all frames of the window, unless those are
      * fewer than one in this many. */
     COMPLETE_SHARE = 3,
+    /* Of the features in a window one in this many, in no keyframe so far, makes a keyframe: where
+     * they begin is where their motion starts. */
+    NEW_SHARE = 4,
     /* And one in this many of all that are seen must have left its mean until a rest is none. */
     SLIDING_SHARE = 10
 };
@@ -51,6 +55,7 @@ void grrl_perception_config_default(struct grrl_perception_config *config)
         .gap_m = 0.1f,
         .slack = 1.0f,
         .min_features = 4,
+        .push_frames = PUSH_FRAMES,
         .static_background = true,
     };
 }
@@ -258,6 +263,29 @@ static unsigned moved_since(const struct grrl_perception *p,
     return moved;
 }
 
+static bool is_in_a_keyframe(const struct grrl_perception *p, uint16_t slot)
+{
+    for (uint8_t k = p->n_keyframes; k-- > 0;)
+        if (p->keyframe[k].weight[slot] > 0)
+            return true;
+    return false;
+}
+
+/* Whether many features of the window are in no keyframe: tracks that began during the push. */
+static bool many_are_new(const struct grrl_perception *p)
+{
+    unsigned seen = 0;
+    unsigned fresh = 0;
+    for (uint16_t i = 0; i < p->n_slots; i++) {
+        struct grrl_vec2 mean;
+        if (window_mean(p, i, &mean) > 0) {
+            seen++;
+            fresh += is_in_a_keyframe(p, i) ? 0u : 1u;
+        }
+    }
+    return fresh >= MOVED_FEATURES && NEW_SHARE * fresh >= seen;
+}
+
 /* What a keyframe adds to its predecessor: the sum of squared displacements. */
 static float novelty(const struct grrl_perception *p, uint8_t k)
 {
@@ -431,9 +459,11 @@ static void observe_push(struct grrl_perception *p, const struct grrl_frame *fra
         p->rest_open = false;
     }
     window_add(p, frame);
-    if (p->window.frames >= MOVING_FRAMES) {
-        if (p->n_keyframes == 0 || moved_since(p, &p->keyframe[p->n_keyframes - 1],
-                                               p->config.keyframe_m) >= MOVED_FEATURES)
+    if (p->window.frames >= (p->config.push_frames > 0 ? p->config.push_frames : PUSH_FRAMES)) {
+        if (p->n_keyframes == 0 ||
+            moved_since(p, &p->keyframe[p->n_keyframes - 1], p->config.keyframe_m) >=
+                MOVED_FEATURES ||
+            many_are_new(p))
             store_window(p, new_keyframe(p), false);
         window_clear(p);
     }

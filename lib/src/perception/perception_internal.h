@@ -4,6 +4,7 @@
  *   perception.c            tracks and keyframes: what was seen
  *   rigid.c                 poses and residuals of features taken as one rigid body
  *   initial_segmentation.c  what may be a body before anything has moved
+ *   rest_error.c            position error at rest that averaging does not remove
  *   outliers.c              points that no motion explains
  *   consensus.c             the largest set of features that moved as one
  *   cut.c                   the line along which two bodies part
@@ -11,6 +12,8 @@
  *   apart.c                 whether two bodies moved apart
  *   bodies.c                which features belong together: split, reassign, merge
  *   joints.c                what ties two bodies together
+ *   joint_place.c           where a joint lies, and what that says for it
+ *   joint_pictures.c        what speaks for a slide before a camera that may move
  *   structure.c             the joints of all bodies, and the model
  */
 #ifndef GRRL_PERCEPTION_INTERNAL_H
@@ -28,11 +31,45 @@ static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
     return grrl_vec2_dot(d, d);
 }
 
+/*
+ * rest_error.c. What points that keep their place are off from rest to rest beyond noise, per axis,
+ * m; 0: no more than the configured model error, or not known yet.
+ */
+float grrl_rest_error(const struct grrl_perception *p);
+
+/* The larger of the error found and the one configured. */
+static inline float grrl_perception_model_error(const struct grrl_perception *p)
+{
+    float given = p->config.model_error_m;
+    return p->rest_error_m > given ? p->rest_error_m : given;
+}
+
+/* From a body's frame to the world and back; the body may look larger than its shape. */
+static inline struct grrl_vec2 grrl_to_world(const struct grrl_perception_pose *pose,
+                                             struct grrl_vec2 local)
+{
+    return grrl_transform(pose->pose, grrl_vec2_scale(local, 1.0f + pose->growth));
+}
+
+static inline struct grrl_vec2 grrl_to_local(const struct grrl_perception_pose *pose,
+                                             struct grrl_vec2 world)
+{
+    return grrl_vec2_scale(grrl_untransform(pose->pose, world), 1.0f / (1.0f + pose->growth));
+}
+
+/* The origin of body b in the frame of a. */
+static inline struct grrl_vec2 grrl_origin_in(const struct grrl_perception_pose *a,
+                                              const struct grrl_perception_pose *b)
+{
+    return grrl_vec2_scale(grrl_unrotate(a->pose, grrl_vec2_sub(b->pose.p, a->pose.p)),
+                           1.0f / (1.0f + a->growth));
+}
+
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
 static inline float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
 {
     float noise = p->config.noise_m;
-    float model = p->config.model_error_m;
+    float model = grrl_perception_model_error(p);
     return noise * noise / (float)weight + model * model;
 }
 
@@ -40,6 +77,13 @@ static inline float grrl_perception_variance(const struct grrl_perception *p, ui
  * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
  * frame, whose origin is the features' centroid.
  */
+
+/*
+ * How much larger a body looks than its shape, given the length of the sum of products and the
+ * inertia of a fit. A priori 0 within some standard deviation, so that few features do not breathe
+ * with their noise.
+ */
+float grrl_rigid_growth(const struct grrl_perception *p, float length, float inertia);
 
 /* Poses in all keyframes and the shape that fit best. poses[k] for k < n_keyframes. */
 void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -87,6 +131,11 @@ bool grrl_outliers_drop(struct grrl_perception *p);
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                             uint8_t body, float *score);
 
+/* The keyframe from which motions are told: features that it did not see take no part. true: tracks
+ * are shorter than the motion, so that they are many. */
+bool grrl_consensus_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                              const float *score, uint8_t *reference);
+
 /* The largest set among `slots` that moved as one in the keyframes of highest score; returns its
  * size, members[] holds it. */
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -128,6 +177,9 @@ bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, ui
 /* The body a feature moves with, or GRRL_FEATURE_.. */
 uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
 
+/* Whether a feature that is in no body moves with one, seen in two keyframes with it at least. */
+bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body);
+
 /* Whether a feature of a body of n_own features would be no worse off in some other body. */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
 
@@ -152,6 +204,9 @@ float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
 
 /* Whether two bodies may be one: they moved apart in no keyframe, or less than tells a joint. */
 bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* Whether two bodies did not move apart, as far as more than noise tells. */
+bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* Whether two bodies moved apart so little that where they part is in doubt. */
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b);
@@ -184,6 +239,8 @@ struct grrl_joint_evidence {
     uint8_t a;
     uint8_t b;
     uint8_t type;
+    bool told;     /* by the motion; the place of the joint may still speak against it */
+    uint8_t doubt; /* enum grrl_reason: why it is none */
     struct grrl_joint_fit fit;
 };
 
@@ -191,7 +248,30 @@ struct grrl_joint_evidence {
 bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
                        struct grrl_joint_evidence *evidence);
 
-/* structure.c: fills the model from the bodies and what ties them together. */
+/* joint_place.c: half the extent of a body's features. */
+float grrl_joint_half_extent(const struct grrl_perception *p, uint8_t body);
+
+/* Whether two bodies lie as near to their joint as joined ones do: farther where untied motion is
+ * worse by much, `support` in chi squared. Sliding ones lie side by side at both ends. */
+bool grrl_joint_is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                        float support);
+
+/* What the place of a pivot says for it before a camera: less with its distance from a body. */
+float grrl_joint_place_evidence(const struct grrl_perception *p,
+                                const struct grrl_joint_evidence *e);
+
+/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
+float grrl_joint_distance_cost(const struct grrl_perception *p,
+                               const struct grrl_joint_evidence *e);
+
+/* joint_pictures.c: what speaks for a slide, in chi squared, before a camera that may move. */
+float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
+                                   const struct grrl_joint_evidence *e);
+
+/* structure.c: whether a third body turns against both of two about one pivot. */
+bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* Fills the model from the bodies and what ties them together. */
 void grrl_structure_update(struct grrl_perception *p);
 
 #endif

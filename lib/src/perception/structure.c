@@ -62,6 +62,22 @@ static bool is_same_pin(const struct grrl_joint_evidence *t, const struct grrl_j
     return grrl_vec2_length(d) < reach;
 }
 
+bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    for (uint8_t c = 0; c < p->n_bodies; c++) {
+        struct grrl_joint_evidence ac;
+        struct grrl_joint_evidence bc;
+        if (c == a || c == b)
+            continue;
+        bool near_a = grrl_joints_weigh(p, a < c ? a : c, a < c ? c : a, &ac);
+        bool near_b = grrl_joints_weigh(p, b < c ? b : c, b < c ? c : b, &bc);
+        if (ac.told && bc.told && (near_a || near_b) && ac.type == GRRL_REVOLUTE &&
+            bc.type == GRRL_REVOLUTE && is_same_pin(&ac, &bc, PIN_REACH * p->config.gap_m))
+            return true;
+    }
+    return false;
+}
+
 /* Several links on one pin are joined by one joint fewer than they are: a further joint at the
  * pivot of one already taken closes no loop. */
 static bool shares_a_pin(const struct grrl_joint_evidence *taken, uint8_t n,
@@ -154,12 +170,21 @@ static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joi
     return accepted;
 }
 
+/* The last keyframe that saw a body: later ones know nothing of its joints. */
+static uint8_t last_seen(const struct grrl_perception *p, uint8_t body)
+{
+    uint8_t k = (uint8_t)(p->n_keyframes - 1);
+    while (k > 0 && !(p->pose[k][body].weight > 0.0f))
+        k--;
+    return k;
+}
+
 static void describe_joint(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                            struct grrl_joint *joint)
 {
-    const struct grrl_pose pose = p->pose[p->n_keyframes - 1][e->a].pose;
+    const struct grrl_perception_pose *a = &p->pose[last_seen(p, e->a)][e->a];
     float v = e->fit.point_variance;
-    struct grrl_vec2 axis = grrl_rotate(pose, e->fit.axis_in_a);
+    struct grrl_vec2 axis = grrl_rotate(a->pose, e->fit.axis_in_a);
     bool slides = e->type == GRRL_PRISMATIC;
     *joint = (struct grrl_joint){
         .a = e->a,
@@ -169,7 +194,7 @@ static void describe_joint(const struct grrl_perception *p, const struct grrl_jo
         .p_revolute = e->p[0],
         .p_prismatic = e->p[1],
         .p_disconnected = e->p[2],
-        .point_m = grrl_transform(pose, e->fit.in_a),
+        .point_m = grrl_to_world(a, e->fit.in_a),
         .point_cov_m2 = {slides ? v * axis.y * axis.y : v, slides ? -v * axis.x * axis.y : 0.0f,
                          slides ? v * axis.x * axis.x : v},
         .axis = axis,
@@ -258,7 +283,7 @@ static void describe_features(const struct grrl_perception *p, struct grrl_model
         bool in_body = body < p->n_bodies && poses[body].weight > 0.0f;
         model->feature_id[i] = p->id[i];
         model->feature_body[i] = body;
-        model->feature_m[i] = in_body ? grrl_transform(poses[body].pose, p->shape[i]) : p->last[i];
+        model->feature_m[i] = in_body ? grrl_to_world(&poses[body], p->shape[i]) : p->last[i];
     }
 }
 
@@ -334,9 +359,10 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     uint8_t second = a < b ? b : a;
     if (first == second || second >= model->n_bodies)
         return GRRL_ERR_ARGUMENT;
-    struct grrl_joint_evidence e = {.fit = {.excited = false}};
+    struct grrl_joint_evidence e = {.doubt = GRRL_REASON_LITTLE};
     (void)grrl_joints_weigh(perception, first, second, &e);
-    *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 1.0f / 3.0f, 1.0f / 3.0f, 1.0f / 3.0f};
+    *pair = (struct grrl_pair){
+        .p_revolute = 1.0f / 3.0f, .p_prismatic = 1.0f / 3.0f, .p_disconnected = 1.0f / 3.0f};
     if (e.fit.excited) {
         pair->p_revolute = e.p[0];
         pair->p_prismatic = e.p[1];
@@ -346,5 +372,7 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
         pair->relation = GRRL_RELATION_JOINED;
     else if (pair->p_disconnected >= SURE_DISCONNECTED)
         pair->relation = GRRL_RELATION_DISCONNECTED;
+    else
+        pair->reason = e.doubt == GRRL_REASON_NONE ? GRRL_REASON_STRUCTURE : e.doubt;
     return GRRL_OK;
 }

@@ -41,7 +41,8 @@ struct grrl_frame {
 /* Fill with grrl_perception_config_default, then change what differs. */
 struct grrl_perception_config {
     float noise_m;       /* standard deviation of a point in one frame, per axis; 0.0007 */
-    float model_error_m; /* what rigidity and joints may be off, per axis; 0.0001 */
+    float model_error_m; /* what rigidity and joints may be off, per axis; 0.0001. It grows with
+                            what points at rest are found to be off */
     float keyframe_m;    /* how far features move in a push until the next keyframe; 0.008 */
     float jump_m;        /* a point that moved farther in one frame is an outlier; 0.015 */
     float table_m;       /* points beyond this distance from the origin are refused; 100 */
@@ -52,8 +53,11 @@ struct grrl_perception_config {
     float slack; /* how much more than noise a split needs, >= 1; 1. A camera's pictures are no
                     exact plane: 5 */
     uint8_t min_features;   /* fewer features are no body; 4 */
+    uint8_t push_frames;    /* averaged into a keyframe of a push, 0: 3. 1 where points move farther
+                               than keyframe_m from frame to frame, or where tracks are short */
     bool static_background; /* sparse points that never move are background; true.
                                false: all that is seen may be a body, as from a moving camera */
+    bool sizes_change;      /* a camera nears things or zooms: bodies may grow and shrink; false */
 };
 
 /* What a feature belongs to, when it is no body's. */
@@ -93,10 +97,23 @@ enum grrl_relation {
     GRRL_RELATION_JOINED        /* by a joint of the model */
 };
 
+/* Why two bodies are undetermined. */
+enum grrl_reason {
+    GRRL_REASON_NONE,     /* they are not */
+    GRRL_REASON_LITTLE,   /* moved apart less than min_turn_rad and min_slide_m, or than noise tells
+                           */
+    GRRL_REASON_NO_TYPE,  /* neither type explains the motion, or both do */
+    GRRL_REASON_UNPROVEN, /* untied motion explains it as well */
+    GRRL_REASON_FAR,      /* they lie too far from the joint that the motion suggests */
+    GRRL_REASON_SIZES,    /* their sizes change against one another: they lie in no one plane */
+    GRRL_REASON_STRUCTURE, /* the joints of other bodies leave no place for theirs */
+};
+
 /* The evidence of two bodies' motion alone; the three probabilities sum to 1. Without a motion that
  * tells they are a third each. The structure of all may refuse what a pair suggests. */
 struct grrl_pair {
     uint8_t relation; /* enum grrl_relation */
+    uint8_t reason;   /* enum grrl_reason */
     float p_revolute;
     float p_prismatic;
     float p_disconnected;
@@ -150,6 +167,7 @@ struct grrl_perception_pose {
     struct grrl_pose pose;
     float weight;  /* sum of its features' weights, 0: not seen */
     float inertia; /* sum of weight times squared distance from the centroid, m^2 */
+    float growth;  /* how much larger it looks than its shape, 0: as large */
 };
 
 struct grrl_perception {
@@ -182,6 +200,7 @@ struct grrl_perception {
     uint16_t number[GRRL_MAX_LINKS];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
     struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
+    float rest_error_m;            /* of points at rest beyond noise and model error, 0: none */
     float bend_m2[GRRL_MAX_LINKS]; /* variance of a body's residuals beyond noise, per axis */
 
     /* private: the answer */
@@ -227,6 +246,14 @@ const struct grrl_model *grrl_perception_model(const struct grrl_perception *per
  */
 GRRL_MUST_USE enum grrl_status grrl_perception_pair(const struct grrl_perception *perception,
                                                     uint8_t a, uint8_t b, struct grrl_pair *pair);
+
+/*
+ * By which share the size of a body (index of the model) changes over the trial, beyond what noise
+ * explains; 0 for a body of a plane that a camera sees from above and from one distance, or for no
+ * body. What changes by a tenth is parted into slices unless sizes_change is set. To be called
+ * before further frames. Cost: linear in keyframes and features.
+ */
+float grrl_perception_size_change(const struct grrl_perception *perception, uint8_t body);
 
 GRRL_API_END
 
