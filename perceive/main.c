@@ -11,6 +11,7 @@
 #include "handle.h"
 #include "motion.h"
 #include "options.h"
+#include "pace.h"
 #include "report.h"
 #include "tracks.h"
 
@@ -19,10 +20,14 @@
 enum { EXIT_FINE = 0, EXIT_INPUT = 1 };
 enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
 
-/* Links from this length on are called large; as for the learner. */
+/* Links at least this long are labelled large, as for the learner. */
 #define LARGE_M 0.15f
 
-/* A pixel is given to the library as a millimetre. */
+/* A body whose size changes by this share is not planar and at a constant distance from the camera.
+ */
+#define SIZE_CHANGE 0.05f
+
+/* The library gets a pixel as a millimetre. */
 static const float pixel_m = 0.001f;
 
 static struct grrl_perception perception;
@@ -55,7 +60,7 @@ static FILE *open_input(const char *path)
     return file;
 }
 
-/* Whether all that was written to a file has got there. */
+/* Closes a file; whether everything was written. */
 static bool close_output(FILE *file, const char *path)
 {
     bool good = fflush(file) == 0 && ferror(file) == 0;
@@ -118,7 +123,7 @@ static bool read_tracks(const struct grrl_perceive_options *options, struct grrl
     return good;
 }
 
-/* The configuration of a profile; *name is what it is called. */
+/* The configuration of a profile; *name is its name. */
 static struct grrl_perception_config configure(const struct grrl_perceive_options *options,
                                                struct unit unit, const char **name)
 {
@@ -150,7 +155,7 @@ static struct grrl_frame frame_of(const struct grrl_tracks *tracks, size_t i)
                                tracks->y + in->first};
 }
 
-/* What the points scatter, of all frames: a file does not tell when things were at rest. */
+/* Measures the noise over all frames: a file does not say when things were at rest. */
 static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 {
     static struct grrl_noise noise;
@@ -161,30 +166,33 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
     }
     enum grrl_status status = grrl_noise_estimate(&noise, noise_m);
     if (status == GRRL_ERR_NONE)
-        (void)fail("--noise auto: too few points that are seen in three frames in a row; give "
-                   "--noise X");
+        (void)fail(
+            "--noise auto: too few points are visible in three consecutive frames; give --noise X");
     else if (status != GRRL_OK)
         (void)fail("--noise auto: the points do not scatter, or are rounded; give --noise X");
     return status == GRRL_OK;
 }
 
 /*
- * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. What was believed after a push counts in what is believed after the next, as it
- * does in the agent. The last frame shows where all has come to lie. Ends early where there are
- * more tracks than the library holds.
+ * Replays the recording as pushes: frames at rest are averaged, others become keyframes when
+ * something has moved enough. As in the agent, the estimate after each push builds on the previous
+ * one. The last frame counts as rest; with only two frames, the push between them was not seen.
+ * Ends early if there are more tracks than the library holds.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
+    static const struct grrl_frame unseen = {0};
     for (size_t i = 0; i < tracks->n_frames; i++) {
         struct grrl_frame frame = frame_of(tracks, i);
+        if (i == 1 && tracks->n_frames == 2 && tracks->frame[i].pushing)
+            grrl_perception_observe(&perception, &unseen, true);
         bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
         grrl_perception_observe(&perception, &frame, pushing);
         if (perception.counts.overflow > 0)
             return GRRL_ERR_FULL;
         if (tracks->frame[i].settled) {
             enum grrl_status status = grrl_perception_update(&perception);
-            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen: perhaps later */
+            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen yet */
                 return status;
         }
     }
@@ -256,8 +264,8 @@ static int report_model(const struct grrl_perceive_options *options,
                                  .per_metre = per_metre,
                                  .noise = (double)perception.config.noise_m * per_metre,
                                  .frames = (unsigned)tracks->n_frames,
-                                 .tracks =
-                                     (unsigned)(grrl_tracks_count_ids(tracks) + tracks->left_out.n),
+                                 .tracks = (unsigned)(grrl_tracks_count_ids(tracks) +
+                                                      tracks->left_out.n + tracks->n_renewed),
                                  .keyframes = perception.counts.keyframes_high,
                                  .y_down = strcmp(unit.name, "px") == 0};
     bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
@@ -273,7 +281,47 @@ static int report_model(const struct grrl_perceive_options *options,
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
-/* More tracks than the library holds: once more, with those that tell most. */
+/* Whether the size of a body changes too much for the rigid model. */
+static bool sizes_change(void)
+{
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    for (uint8_t b = 0; b < model->n_bodies; b++)
+        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
+            return true;
+    return false;
+}
+
+static unsigned unassigned(const struct grrl_model *model)
+{
+    unsigned n = 0;
+    for (uint16_t i = 0; i < model->n_features; i++)
+        n += model->feature_body[i] == GRRL_FEATURE_NONE;
+    return n;
+}
+
+/*
+ * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
+ * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
+ */
+static enum grrl_status observe_growing(const struct grrl_perception_config *config,
+                                        const struct grrl_tracks *tracks)
+{
+    static struct grrl_perception rigid;
+    struct grrl_perception_config growing = *config;
+    if (config->static_background || !sizes_change())
+        return GRRL_OK;
+    rigid = perception;
+    growing.sizes_change = true;
+    enum grrl_status status = grrl_perception_init(&perception, &growing);
+    status = status == GRRL_OK ? observe(tracks) : status;
+    if (status != GRRL_OK ||
+        grrl_perception_model(&perception)->n_bodies >= grrl_perception_model(&rigid)->n_bodies ||
+        unassigned(grrl_perception_model(&perception)) > unassigned(grrl_perception_model(&rigid)))
+        perception = rigid;
+    return GRRL_OK;
+}
+
+/* More tracks than the library holds: tries again with the most informative ones. */
 static enum grrl_status observe_chosen(const struct grrl_perception_config *config,
                                        struct grrl_tracks *tracks)
 {
@@ -291,6 +339,8 @@ static int perceive_with(const struct grrl_perception_config *config,
     status = status == GRRL_OK ? observe(tracks) : status;
     if (perception.counts.overflow > 0)
         status = observe_chosen(config, tracks);
+    if (status == GRRL_OK)
+        status = observe_growing(config, tracks);
     if (status == GRRL_ERR_NONE && perception.counts.refused > 0)
         return fail("every point lies too far from the origin: pixels or millimetres? See --unit");
     if (status == GRRL_ERR_NONE)
@@ -314,7 +364,12 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
     } else {
         struct grrl_perception_config config = configure(options, unit, &profile);
         to_metres(&tracks, unit);
-        if (!options->noise_from_points || measure_noise(&tracks, &config.noise_m))
+        if (options->noise_from_points && !measure_noise(&tracks, &config.noise_m))
+            result = EXIT_INPUT;
+        else if (!grrl_tracks_join_renewed(&tracks, config.noise_m) ||
+                 !grrl_pace_configure(&tracks, &config))
+            result = fail("out of memory");
+        else
             result = perceive_with(&config, options, &tracks, unit, profile);
     }
     grrl_tracks_free(&tracks);

@@ -74,10 +74,24 @@ const char *grrl_report_relation(const struct grrl_report *report, unsigned a, u
                                  struct grrl_pair *pair)
 {
     if (grrl_perception_pair(report->perception, (uint8_t)a, (uint8_t)b, pair) != GRRL_OK)
-        *pair = (struct grrl_pair){GRRL_RELATION_UNDETERMINED, 0.0f, 0.0f, 0.0f};
+        *pair = (struct grrl_pair){.relation = GRRL_RELATION_UNDETERMINED};
     return pair->relation == GRRL_RELATION_JOINED         ? "joined"
            : pair->relation == GRRL_RELATION_DISCONNECTED ? "disconnected"
                                                           : "undetermined";
+}
+
+const char *grrl_report_reason(const struct grrl_pair *pair)
+{
+    static const char *const words[] = {
+        [GRRL_REASON_NONE] = "",
+        [GRRL_REASON_LITTLE] = "too little relative motion",
+        [GRRL_REASON_NO_TYPE] = "neither type explains the motion, or both do",
+        [GRRL_REASON_UNPROVEN] = "independent motion explains it as well",
+        [GRRL_REASON_FAR] = "too far from the joint the motion suggests",
+        [GRRL_REASON_SIZES] = "their relative size changes",
+        [GRRL_REASON_STRUCTURE] = "other joints leave no room for this one",
+    };
+    return pair->reason < sizeof words / sizeof words[0] ? words[pair->reason] : "";
 }
 
 static void print_other_pairs(FILE *file, const struct grrl_report *report)
@@ -91,9 +105,10 @@ static void print_other_pairs(FILE *file, const struct grrl_report *report)
             if (pair.relation == GRRL_RELATION_JOINED)
                 continue;
             (void)fprintf(
-                file, "%s  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)\n",
+                file, "%s  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)%s%s\n",
                 heading, (unsigned)model->body[a].number, (unsigned)model->body[b].number, relation,
-                (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected);
+                (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected,
+                pair.reason == GRRL_REASON_NONE ? "" : ": ", grrl_report_reason(&pair));
             heading = "";
         }
     }

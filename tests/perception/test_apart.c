@@ -26,17 +26,31 @@ static struct placed relative(int k, int a, int b)
     return seen_from(placed_of(scene.pose[k][a].pose), placed_of(scene.pose[k][b].pose));
 }
 
+/* Keyframes that tell: the rests, if two of them average more frames than a push does. */
+static int telling(int a, int b, int *keyframes)
+{
+    int n = 0;
+    int good = 0;
+    for (int k = 0; k < scene.n_keyframes; k++) {
+        int most = 0;
+        for (int i = 0; i < scene.n_slots; i++)
+            most = scene.keyframe[k].weight[i] > most ? scene.keyframe[k].weight[i] : most;
+        good += scene.keyframe[k].at_rest && sees(k, a) && sees(k, b) && most > 3;
+    }
+    for (int k = 0; k < scene.n_keyframes; k++)
+        if ((scene.keyframe[k].at_rest || good < 2) && sees(k, a) && sees(k, b))
+            keyframes[n++] = k;
+    return n;
+}
+
 /* The largest differences of two rests; a range has the first rest in it, where nothing differs. */
 static struct slow_range slow_range_between(int a, int b)
 {
     struct slow_range range = {0.0, 0.0, 0.0, 0.0};
     int rests[GRRL_MAX_KEYFRAMES];
-    int n = 0;
+    int n = telling(a, b, rests);
     double x = 0.0;
     double y = 0.0;
-    for (int k = 0; k < scene.n_keyframes; k++)
-        if (scene.keyframe[k].at_rest && sees(k, a) && sees(k, b))
-            rests[n++] = k;
     for (int i = 0; i < n; i++) {
         const struct grrl_perception_pose *pa = &scene.pose[rests[i]][a];
         const struct grrl_perception_pose *pb = &scene.pose[rests[i]][b];

@@ -133,12 +133,19 @@ static void take_out_small(void)
             take_out(b);
 }
 
+/* Two that look like two things at rest, and a third turns against both in one place. */
+static bool are_one_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return grrl_structure_turn_as_one(p, a, b) && grrl_apart_are_still(p, a, b) &&
+           !grrl_assign_bodies_may_share(p, a, b);
+}
+
 /* The first pair that may be one becomes one, again from the start with the same first body. */
-static void merge(void)
+static void merge(bool (*may_merge)(const struct grrl_perception *, uint8_t, uint8_t))
 {
     for (uint8_t a = 0; a + 1 < copy.n_bodies; a++) {
         uint8_t b = (uint8_t)(a + 1);
-        while (b < copy.n_bodies && !grrl_apart_may_merge(&copy, a, b))
+        while (b < copy.n_bodies && !may_merge(&copy, a, b))
             b++;
         if (b < copy.n_bodies) {
             give_all(b, a);
@@ -219,7 +226,7 @@ static double slow_bend(int body)
             struct point miss = minus(point_of(copy.keyframe[k].point[i]),
                                       to_world(placed_of(pose->pose), point_of(copy.shape[i])));
             sum += fmin(square(miss), pow((double)copy.config.min_slide_m, 2.0)) / 2.0 -
-                   variance_of(w);
+                   (double)grrl_perception_variance(&copy, (uint8_t)w);
             n += 1.0;
         }
     }
@@ -230,6 +237,7 @@ static void plain_update(void)
 {
     if (copy.n_bodies == 0)
         grrl_initial_segmentation(&copy);
+    copy.rest_error_m = grrl_rest_error(&copy);
     for (uint16_t i = 0; i < copy.n_slots; i++)
         copy.has_moved[i] = grrl_assign_moves(&copy, i);
     fit_every_body();
@@ -241,12 +249,13 @@ static void plain_update(void)
     assign_all();
     adopt();
     take_out_small();
-    merge();
+    merge(grrl_apart_may_merge);
     for (uint8_t a = 0; a < copy.n_bodies; a++)
         for (uint8_t b = (uint8_t)(a + 1); b < copy.n_bodies; b++)
             cut(a, b);
     assign_all();
     take_out_small();
+    merge(are_one_at_rest);
     give_back();
     take_out_redundant();
     for (uint8_t b = copy.n_bodies; b-- > 0;)

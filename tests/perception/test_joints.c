@@ -296,15 +296,47 @@ static double slow_gap(int a, int b, int k)
     return best;
 }
 
-static bool slow_is_near(int a, int b, bool revolute, const struct slow_fit *fit)
+/* From its middle to its farthest feature. */
+static double slow_reach(int body)
+{
+    double far = 0.0;
+    for (int i = 0; i < scene.n_slots; i++)
+        if (scene.body_of[i] == body)
+            far = fmax(far, sqrt(square(point_of(scene.shape[i]))));
+    return far;
+}
+
+/* Whether a further body lies nearer to the pivot than `far` when a was seen last. */
+static bool slow_lies_between(int a, int b, struct point in_a, double far)
+{
+    int last = -1;
+    bool nearer = false;
+    for (int k = 0; k < scene.n_keyframes; k++)
+        last = scene.pose[k][a].weight > 0.0f ? k : last;
+    for (int c = 0; c < scene.n_bodies; c++) {
+        if (c == a || c == b || !(scene.pose[last][c].weight > 0.0f))
+            continue;
+        struct point pivot = to_world(placed_of(scene.pose[last][a].pose), in_a);
+        double away = slow_distance(c, to_local(placed_of(scene.pose[last][c].pose), pivot));
+        nearer = above(far, away) || nearer;
+    }
+    return nearer;
+}
+
+static bool slow_is_near(int a, int b, bool revolute, const struct slow_fit *fit, double support)
 {
     double gap = (double)scene.config.gap_m;
     if (revolute) {
-        bool to_a = !above(slow_distance(a, fit->in_a), gap);
-        bool to_b = !above(slow_distance(b, fit->in_b), gap);
-        return to_a && to_b;
+        double da = slow_distance(a, fit->in_a);
+        double db = slow_distance(b, fit->in_b);
+        bool near = !above(fmax(da, db), gap);
+        bool certain = above(support, 30.0);
+        bool reached =
+            !above(da, gap + 2.2 * slow_reach(a)) && !above(db, gap + 2.2 * slow_reach(b));
+        return near || (certain && reached && !slow_lies_between(a, b, fit->in_a, fmax(da, db)));
     }
     bool near = true;
+    gap += above(support, 30.0) ? slow_reach(a) + slow_reach(b) : 0.0;
     for (int k = 0; k < scene.n_keyframes; k++) {
         bool both = scene.pose[k][a].weight > 0.0f && scene.pose[k][b].weight > 0.0f;
         if (both && scene.keyframe[k].at_rest)
@@ -394,15 +426,19 @@ static struct slow_evidence slow_weigh(int a, int b)
         e.p[i] = 1.0 / e.p[i];
     }
     double scale = 0.4 * (double)scene.config.gap_m;
+    int last = 0; /* keyframe that saw both */
+    for (int k = 0; k < scene.n_keyframes; k++)
+        last = scene.pose[k][a].weight > 0.0f && scene.pose[k][b].weight > 0.0f ? k : last;
     double away = e.revolute ? hypot(slow_distance(a, e.fit.in_a), slow_distance(b, e.fit.in_b))
-                             : slow_gap(a, b, scene.n_keyframes - 1);
+                             : slow_gap(a, b, last);
     e.order = fmin(untied - e.fit.excess, 6.0) - away * away / (scale * scale) -
               0.1 * fmax(e.fit.excess, 0.0);
     bool fits = !above(e.fit.excess, 10.0 + 10.0 * sqrt((double)n_at));
     bool better = above(e.odds, 8.0);
     bool needed = above(e.weight, 8.0);
-    bool near = slow_is_near(a, b, e.revolute, &e.fit);
-    e.accepted = fits && better && needed && near && e.fit.excited;
+    bool near = slow_is_near(a, b, e.revolute, &e.fit, untied - e.fit.excess);
+    bool believed = above(e.p[e.revolute ? 0 : 1], 0.5);
+    e.accepted = believed && fits && better && needed && near && e.fit.excited;
     return e;
 }
 

@@ -207,6 +207,21 @@ static int moved_from(const struct picture *picture, double far)
     return n;
 }
 
+/* Whether a quarter of what is seen, and three at least, is in no picture. */
+static bool much_is_new(void)
+{
+    int seen = 0;
+    int fresh = 0;
+    for (int i = 0; i < plain.n_tracks; i++) {
+        bool drawn = false;
+        for (int k = 0; k < plain.n_pictures; k++)
+            drawn = drawn || plain.picture[k].weight[i] > 0;
+        seen += larger(i)->n > 0;
+        fresh += larger(i)->n > 0 && !drawn;
+    }
+    return fresh >= 3 && 4 * fresh >= seen;
+}
+
 static double novelty(int k)
 {
     double sum = 0.0;
@@ -314,7 +329,9 @@ static void plain_observe(const struct grrl_frame *frame, bool pushing)
         take_frame(frame);
     if (pushing && plain.window_frames == 3) {
         if (plain.n_pictures == 0 ||
-            moved_from(&plain.picture[plain.n_pictures - 1], (double)scene.config.keyframe_m) >= 3)
+            moved_from(&plain.picture[plain.n_pictures - 1], (double)scene.config.keyframe_m) >=
+                3 ||
+            much_is_new())
             draw(new_picture(), false);
         clear_window();
     }

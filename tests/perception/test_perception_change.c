@@ -83,6 +83,7 @@ static void two_objects_at_rest_are_two_bodies_and_no_more_is_known(void **state
     assert_int_equal(grrl_perception_model(&perception)->n_bodies, 2);
     assert_int_equal(grrl_perception_pair(&perception, 0, 1, &pair), GRRL_OK);
     assert_int_equal(pair.relation, GRRL_RELATION_UNDETERMINED);
+    assert_int_equal(pair.reason, GRRL_REASON_LITTLE);
     assert_true(fabsf(pair.p_disconnected - 1.0f / 3.0f) < 1e-5f);
     assert_int_equal(grrl_perception_pair(&perception, 1, 1, &pair), GRRL_ERR_ARGUMENT);
     assert_int_equal(grrl_perception_pair(&perception, 0, 2, &pair), GRRL_ERR_ARGUMENT);

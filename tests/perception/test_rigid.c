@@ -133,6 +133,28 @@ static int slow_reference(const uint16_t *slots, int n)
     return best;
 }
 
+/* From features to keyframes that saw two of them, and on to the others these saw; returns how many
+ * features have a place. */
+static int slow_spread(const uint16_t *slots, int n, uint16_t *known, int n_known,
+                       struct point *shape, struct slow_pose *poses)
+{
+    int before = -1;
+    while (n_known > before) {
+        before = n_known;
+        for (int i = 0; i < n; i++) {
+            bool is_known = false;
+            for (int j = 0; j < n_known; j++)
+                is_known = is_known || known[j] == slots[i];
+            if (!is_known && slow_place(slots[i], poses, &shape[slots[i]]))
+                known[n_known++] = slots[i];
+        }
+        for (int k = 0; k < scene.n_keyframes; k++)
+            if (!(poses[k].weight > 0.0))
+                poses[k] = slow_fit_pose(k, known, n_known, shape);
+    }
+    return n_known;
+}
+
 static void slow_fit(const uint16_t *slots, int n, struct point *shape, struct slow_pose *poses)
 {
     int reference = slow_reference(slots, n);
@@ -148,25 +170,24 @@ static void slow_fit(const uint16_t *slots, int n, struct point *shape, struct s
         middle.y += seen_at(reference, known[i]).y / n_known;
     }
     for (int i = 0; i < n; i++)
-        shape[slots[i]] = mean; /* what is seen nowhere is in the middle */
+        shape[slots[i]] = mean; /* what is never seen with the others is in the middle */
     for (int i = 0; i < n_known; i++)
         shape[known[i]] = minus(seen_at(reference, known[i]), middle);
-    for (int round = 0; round < 2; round++) {
-        for (int k = 0; k < scene.n_keyframes; k++) {
-            poses[k] = round == 0 ? slow_fit_pose(k, known, n_known, shape)
-                                  : slow_fit_pose(k, slots, n, shape);
-        }
-        for (int i = 0; i < n; i++)
-            (void)slow_place(slots[i], poses, &shape[slots[i]]);
-        for (int i = 0; i < n && round == 0; i++) {
-            mean.x += shape[slots[i]].x / n;
-            mean.y += shape[slots[i]].y / n;
-        }
-        for (int i = 0; i < n && round == 0; i++)
-            shape[slots[i]] = minus(shape[slots[i]], mean);
-    }
     for (int k = 0; k < scene.n_keyframes; k++)
-        poses[k] = slow_fit_pose(k, slots, n, shape);
+        poses[k] = slow_fit_pose(k, known, n_known, shape);
+    n_known = slow_spread(slots, n, known, n_known, shape, poses);
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < n_known; i++)
+            (void)slow_place(known[i], poses, &shape[known[i]]);
+        for (int i = 0; i < n_known && round == 0; i++) {
+            mean.x += shape[known[i]].x / n_known;
+            mean.y += shape[known[i]].y / n_known;
+        }
+        for (int i = 0; i < n_known && round == 0; i++)
+            shape[known[i]] = minus(shape[known[i]], mean);
+        for (int k = 0; k < scene.n_keyframes; k++)
+            poses[k] = slow_fit_pose(k, known, n_known, shape);
+    }
 }
 
 static void assert_same_poses(const struct grrl_perception_pose *poses, int stride,

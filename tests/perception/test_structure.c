@@ -80,7 +80,8 @@ static void make_scene(int n_bodies, int n_features, double joined)
             scene.pose[k][b] = (struct grrl_perception_pose){
                 {{(float)at.p.x, (float)at.p.y}, (float)at.c, (float)at.s},
                 scene_chance(0.85) ? 20.0f : 0.0f,
-                1.0f};
+                1.0f,
+                0.0f};
         }
     }
     for (int i = 0; i < scene.n_slots; i++)
@@ -234,7 +235,10 @@ static void slow_structure(void)
 
 static void check_joint(const struct grrl_joint *joint, const struct grrl_joint_evidence *e)
 {
-    struct placed at = placed_of(scene.pose[scene.n_keyframes - 1][e->a].pose);
+    int seen = 0; /* last; where a body is not seen, nothing tells of its joints */
+    for (int k = 0; k < scene.n_keyframes; k++)
+        seen = scene.pose[k][e->a].weight > 0.0f ? k : seen;
+    struct placed at = placed_of(scene.pose[seen][e->a].pose);
     struct point axis = {at.c * (double)e->fit.axis_in_a.x - at.s * (double)e->fit.axis_in_a.y,
                          at.s * (double)e->fit.axis_in_a.x + at.c * (double)e->fit.axis_in_a.y};
     double v = (double)e->fit.point_variance;

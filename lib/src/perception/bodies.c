@@ -1,28 +1,27 @@
 /*
- * bodies.c: features into rigid bodies, their number unknown.
+ * bodies.c: groups features into rigid bodies; their number is unknown.
  *
- * The bodies of the last update are the start (at first those of initial_segmentation.c): a body
- * whose residuals are too large is split by consensus.c, features are reassigned, and bodies that
- * never moved apart are merged. All tests are on squared residuals in units of their variance, so
- * that one noise parameter is enough; a difference counts when it is significant in single
- * keyframes, however many other keyframes agree.
+ * The search starts from the bodies of the last update (at first those of initial_segmentation.c):
+ * a body whose residuals are too large is split by consensus.c, features are reassigned, and bodies
+ * that never moved apart are merged. All tests use squared residuals in units of their variance, so
+ * one noise parameter is enough; a difference counts if it is significant in single keyframes,
+ * however many other keyframes agree.
  */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
-/* Misfit above which a body is split, in standard deviations of chi squared. Noise alone lets a
- * body of ten features exceed it in one of 2,700 keyframes, in one of 57 trials of 48 keyframes. A
- * split without a cause costs time only: merge_bodies undoes it. */
+/* Misfit above which a body is split, in standard deviations of chi squared. By noise alone a body
+ * of ten features exceeds it in one of 2,700 keyframes, or one of 57 trials of 48 keyframes. A
+ * needless split costs only time: the merges undo it. */
 #define SPLIT_SIGMAS 4.5f
 
-/* Chi squared by which another cut must be better: what three parameters (MERGE_FREE) save by
- * chance in 7 of 1,000 cases. Where links had been parted wrongly the right cut gained 35 to 200.
- */
+/* Chi squared that a new cut must gain: what three parameters (MERGE_FREE) save by chance in 7 of
+ * 1,000 cases. Where links had been separated wrongly, the right cut gained 35 to 200. */
 #define CUT_GAIN 12.0f
 
-/* Rounds of reassignment, at most: features could go to and fro. Of 4,400 calls on 200 random
- * chains 19 ended at the limit, 98% needed three rounds or fewer. */
+/* Limit on the rounds of reassignment: features could oscillate. Of 4,400 calls on 200 random
+ * chains 19 reached the limit; 98% needed three rounds or fewer. */
 #define REASSIGN_ROUNDS 6
 
 void grrl_bodies_add(struct grrl_perception *p)
@@ -43,7 +42,7 @@ static void fit_all(struct grrl_perception *p)
         fit_body(p, b);
 }
 
-/* Takes a body out of the list; its features must be elsewhere. */
+/* Removes a body from the list; it must have no features left. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
     for (uint16_t i = 0; i < p->n_slots; i++)
@@ -58,20 +57,30 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-static void merge_bodies(struct grrl_perception *p)
+/* Merges every pair of bodies for which `are_one` holds. */
+static void merge_where(struct grrl_perception *p,
+                        bool (*are_one)(const struct grrl_perception *, uint8_t, uint8_t))
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (!grrl_apart_may_merge(p, a, b))
+            if (!are_one(p, a, b))
                 continue;
             for (uint16_t i = 0; i < p->n_slots; i++)
                 if (p->body_of[i] == b)
                     p->body_of[i] = a;
             remove_body(p, b);
             fit_body(p, a);
-            b = a; /* the merged body may now fit one that was passed over */
+            b = a; /* the merged body may now match one checked before */
         }
     }
+}
+
+/* Two separate blobs at rest may be one link with few visible features. They are if another body
+ * turns relative to both about the same point: two links would have two such points. */
+static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
+           grrl_structure_turn_as_one(p, a, b);
 }
 
 static bool reassign_once(struct grrl_perception *p)
@@ -87,14 +96,14 @@ static bool reassign_once(struct grrl_perception *p)
     return changed;
 }
 
-/* Features to the body they move with, poses to the features, until nothing changes. */
+/* Alternates between assigning features to bodies and fitting poses until nothing changes. */
 static void reassign(struct grrl_perception *p)
 {
     for (int round = 0; round < REASSIGN_ROUNDS && reassign_once(p); round++) {
     }
 }
 
-/* Bodies with too few features are none. */
+/* Removes bodies with too few features. */
 static void dissolve_small(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies; b++) {
@@ -108,8 +117,8 @@ static void dissolve_small(struct grrl_perception *p)
     }
 }
 
-/* What never moved and hangs together only by what has moved away is the table beside the object.
- */
+/* A body that never moved, and whose features were connected only through features that have since
+ * moved away, is the table beside the object. */
 static void give_back_the_table(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
@@ -125,8 +134,8 @@ static void give_back_the_table(struct grrl_perception *p)
     }
 }
 
-/* Features beside a joint move with either link and can pose as a body of their own: a body is
- * real only if enough of its features fit nowhere else. */
+/* Features near a joint move with either link and can look like a body of their own: a body is real
+ * only if enough of its features fit nowhere else. */
 static void dissolve_redundant(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
@@ -144,8 +153,8 @@ static void dissolve_redundant(struct grrl_perception *p)
     }
 }
 
-/* A body whose features have all gone to others is none. They moved there when another body
- * dissolved, so that nothing tells where it is any more, and no joint of it is left. */
+/* Removes bodies that have lost all their features to others, which happens when another body
+ * dissolves: their place is no longer known, and they have no joints. */
 static void drop_empty(struct grrl_perception *p)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -154,7 +163,7 @@ static void drop_empty(struct grrl_perception *p)
             remove_body(p, b--);
 }
 
-/* Two bodies that moved apart only a little are cut anew, where they part best (cut.c). */
+/* Cuts two bodies with little relative motion again, where the cut separates them best (cut.c). */
 static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     if (!grrl_apart_is_little(p, a, b) || !grrl_assign_bodies_may_share(p, a, b))
@@ -174,7 +183,7 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
     }
     if (gain < CUT_GAIN * p->config.slack)
         return;
-    int of_a = 0; /* the part goes on as the body most of it was, so that numbers stay */
+    int of_a = 0; /* the part keeps the body most of it belonged to, so numbers stay */
     for (uint16_t i = 0; i < n_part; i++)
         of_a += p->body_of[part[i]] == a ? 1 : -1;
     for (uint16_t i = 0; i < together.n; i++)
@@ -192,7 +201,32 @@ static void cut_all_anew(struct grrl_perception *p)
             cut_anew(p, a, b);
 }
 
-/* Splits body `body` if a part of it moved apart from the rest. */
+/*
+ * A body outlives its features. If tracks are short, features that the reference keyframe of a
+ * consensus did not see took no part in it. They join as long as they move with the body where its
+ * pose is known; that gives its pose in further keyframes.
+ */
+static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t *slots, uint16_t n,
+                        const float *score)
+{
+    uint8_t reference;
+    bool gained = grrl_consensus_reference(p, slots, n, score, &reference);
+    while (gained) {
+        gained = false;
+        for (uint16_t i = 0; i < n; i++) {
+            if (p->body_of[slots[i]] == GRRL_FEATURE_NONE &&
+                p->keyframe[reference].weight[slots[i]] == 0 &&
+                grrl_assign_follows(p, slots[i], body)) {
+                p->body_of[slots[i]] = body;
+                gained = true;
+            }
+        }
+        if (gained)
+            fit_body(p, body);
+    }
+}
+
+/* Splits `body` if part of it moved relative to the rest. */
 static void split_body(struct grrl_perception *p, uint8_t body)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -210,10 +244,11 @@ static void split_body(struct grrl_perception *p, uint8_t body)
     for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
     fit_body(p, body);
+    extend_body(p, body, slots, n, score);
 }
 
-/* Bodies among the features that belong to none: what splitting left over, and what the background
- * gave up because it moved. */
+/* Forms a body from unassigned features: those left over by splits, and those that left the
+ * background because they moved. */
 static bool adopt_strays(struct grrl_perception *p)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -236,13 +271,15 @@ static bool adopt_strays(struct grrl_perception *p)
         p->body_of[members[i]] = body;
     grrl_bodies_add(p);
     fit_body(p, body);
+    extend_body(p, body, slots, n, score);
     return true;
 }
 
 /*
- * A joint within a body that moved too little to be told bends the body: what its residuals vary
- * beyond noise, per axis. It bends it less than what tells a joint; outliers do more, and must not
- * pass for it: where they do, no joint misses anything any more.
+ * The variance of a body's residuals beyond noise, per axis: a joint inside a body that moved too
+ * little to be detected bends the body. Its effect is below the joint detection threshold, so
+ * larger residuals are capped: outliers must not count as bending, since that would make every
+ * joint fit.
  */
 static float bend_of(const struct grrl_perception *p, uint8_t body)
 {
@@ -254,7 +291,7 @@ static float bend_of(const struct grrl_perception *p, uint8_t body)
             uint8_t w = p->keyframe[k].weight[i];
             if (w > 0 && p->pose[k][body].weight > 0.0f) {
                 float d2 = grrl_vec2_distance2(p->keyframe[k].point[i],
-                                               grrl_transform(p->pose[k][body].pose, p->shape[i]));
+                                               grrl_to_world(&p->pose[k][body], p->shape[i]));
                 sum += 0.5f * (d2 < most ? d2 : most) - grrl_perception_variance(p, w);
                 n += 1.0f;
             }
@@ -267,6 +304,7 @@ void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0)
         grrl_initial_segmentation(p);
+    p->rest_error_m = grrl_rest_error(p);
     for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = grrl_assign_moves(p, i);
     fit_all(p);
@@ -277,13 +315,14 @@ void grrl_bodies_update(struct grrl_perception *p)
     while (adopt_strays(p)) {
     }
     reassign(p);
-    while (adopt_strays(p)) { /* what the background gave up */
+    while (adopt_strays(p)) { /* features that left the background */
     }
     dissolve_small(p);
-    merge_bodies(p);
+    merge_where(p, grrl_apart_may_merge);
     cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
+    merge_where(p, are_one_link_at_rest);
     give_back_the_table(p);
     dissolve_redundant(p);
     drop_empty(p);

@@ -2,38 +2,39 @@
  * consensus.c: the largest set of features that moved as one.
  *
  * Each hypothesis starts from a feature and its nearest neighbours: where has this group moved, and
- * which features moved with it? It grows over those that did. The residual of a follower is divided
- * by a variance that includes the uncertainty of the group's own pose, so that four features can
- * grow along a link without losing its far end.
+ * which features moved with it? It grows to include those that did. The residual of a follower is
+ * divided by a variance that includes the uncertainty of the group's own pose, so a group of four
+ * features can grow along a link without losing its far end.
  */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
-/* With the seed a group of four, as many as make a body (min_features): a smaller one has a pose so
- * uncertain that everything follows it. */
+/* With the seed they form a group of four, as many as make a body (min_features): the pose of a
+ * smaller group is so uncertain that everything follows it. */
 #define SEED_NEIGHBOURS 3
 
-/* Hypotheses tried, evenly over the features: the cost of a split is linear in them. A part with
- * one in ten of the features has four or five seeds. */
+/* Number of hypotheses, spread evenly over the features: the cost of a split is linear in it. A
+ * part with one in ten of the features gets four or five seeds. */
 #define SEEDS_MAX 48
 
-/* Keyframes used to score hypotheses. Half are spread over the trial, since with the worst alone
- * two links in one body stayed so for many pushes. */
+/* Keyframes used to score hypotheses. Half are spread over the trial: with only the worst ones, two
+ * links in one body stayed together for many pushes. */
 #define SPLIT_KEYFRAMES 12
 
-/* Of one squared residual, 20 standard deviations: high, since keyframes are ranked by it and those
- * in which much moved apart must not all be the same. */
+/* Cap on one squared residual, 20 standard deviations: high because keyframes are ranked by misfit,
+ * and those with large relative motions must not all score the same. */
 #define MISFIT_CAP 400.0f
 
-/* Mean squared residual of a follower, where 2 is expected: over 12 keyframes noise exceeds it once
- * in 77 features, over 6 once in 20. Those lost are reassigned afterwards. */
+/* Limit on a follower's mean squared residual, which is 2 on average: over 12 keyframes noise
+ * exceeds it once in 77 features, over 6 once in 20. Features lost this way are reassigned
+ * afterwards. */
 #define INLIER_COST 3.5f
 
-#define GROW_ROUNDS 3 /* a group grows along a link, and settles */
-#define SEEN 100u     /* outweighs the frames averaged, 60 at most */
+#define GROW_ROUNDS 3 /* a group grows along a link, then settles */
+#define SEEN 100u     /* outweighs the number of frames averaged, 60 at most */
 
-/* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
+/* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                             uint8_t body, float *score)
 {
@@ -48,7 +49,7 @@ float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slo
             uint8_t w = p->keyframe[k].weight[slots[i]];
             if (w > 0 && pose->weight > 0.0f) {
                 float d2 = grrl_vec2_distance2(p->keyframe[k].point[slots[i]],
-                                               grrl_transform(pose->pose, p->shape[slots[i]])) /
+                                               grrl_to_world(pose, p->shape[slots[i]])) /
                            grrl_perception_variance(p, w);
                 sum += d2 < MISFIT_CAP ? d2 : MISFIT_CAP;
                 count += 1.0f;
@@ -63,43 +64,130 @@ float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slo
     return worst > all ? worst : all;
 }
 
-/* A few keyframes as a perception of their own would see them: which to score hypotheses on. */
+/* The keyframes on which hypotheses are scored. */
 struct choice_of_keyframes {
     uint8_t n;
     uint8_t k[SPLIT_KEYFRAMES];
 };
 
-/* Half of them spread over all keyframes, the last included, so that no lasting change is missed;
- * half those in which the features fit worst as one body. */
+/* Number of features seen in both keyframes. */
+static unsigned seen_in_both(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                             uint8_t k0, uint8_t k1)
+{
+    unsigned seen = 0;
+    for (uint16_t i = 0; i < n; i++)
+        if (p->keyframe[k0].weight[slots[i]] > 0 && p->keyframe[k1].weight[slots[i]] > 0)
+            seen++;
+    return seen;
+}
+
+/* The keyframe that saw most features, averaged over the most frames. */
+static uint8_t fullest_keyframe(const struct grrl_perception *p, const uint16_t *slots, uint16_t n)
+{
+    uint8_t best = 0;
+    unsigned best_seen = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        unsigned seen = 0;
+        for (uint16_t i = 0; i < n; i++) {
+            uint8_t w = p->keyframe[k].weight[slots[i]];
+            seen += w > 0 ? SEEN + w : 0u;
+        }
+        if (seen > best_seen) {
+            best_seen = seen;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* If tracks are shorter than the motion: the keyframe that shares the most misfit with others. */
+static uint8_t telling_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                                 const float *score)
+{
+    uint8_t best = 0;
+    float best_told = -1.0f;
+    for (uint8_t k0 = 0; k0 < p->n_keyframes; k0++) {
+        float told = 0.0f;
+        for (uint8_t k = 0; k < p->n_keyframes; k++) {
+            unsigned seen = k == k0 ? 0 : seen_in_both(p, slots, n, k0, k);
+            if (seen > SEED_NEIGHBOURS && score[k] > 0.0f)
+                told += (float)seen * score[k];
+        }
+        if (told > best_told) {
+            best_told = told;
+            best = k0;
+        }
+    }
+    return best;
+}
+
+/* Whether tracks are shorter than the motion: most keyframes have too few features in common with
+ * the fullest for a group. */
+static bool tracks_are_short(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                             uint8_t fullest)
+{
+    unsigned shared = 0;
+    unsigned filled = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        filled += seen_in_both(p, slots, n, k, k) > SEED_NEIGHBOURS ? 1u : 0u;
+        shared += seen_in_both(p, slots, n, fullest, k) > SEED_NEIGHBOURS ? 1u : 0u;
+    }
+    return 2 * shared < filled;
+}
+
+bool grrl_consensus_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                              const float *score, uint8_t *reference)
+{
+    *reference = fullest_keyframe(p, slots, n);
+    if (!tracks_are_short(p, slots, n, *reference))
+        return false;
+    *reference = telling_reference(p, slots, n, score);
+    return true;
+}
+
+/*
+ * Half are spread over all keyframes, including the last, so that no lasting change is missed; the
+ * other half are those in which the features fit worst as one body. With short tracks, only
+ * keyframes that share enough features with k0 for a group are used.
+ */
 static struct choice_of_keyframes telling_keyframes(const struct grrl_perception *p,
-                                                    const float *score)
+                                                    const uint16_t *slots, uint16_t n, uint8_t k0,
+                                                    bool is_short, const float *score)
 {
     struct choice_of_keyframes chosen = {0};
+    uint8_t useful[GRRL_MAX_KEYFRAMES];
+    uint8_t n_useful = 0;
     bool taken[GRRL_MAX_KEYFRAMES] = {false};
-    for (uint8_t i = 0; i < SPLIT_KEYFRAMES / 2; i++) {
-        uint8_t k = (uint8_t)((p->n_keyframes - 1) * (i + 1) / (SPLIT_KEYFRAMES / 2));
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        if (!is_short || seen_in_both(p, slots, n, k0, k) > SEED_NEIGHBOURS)
+            useful[n_useful++] = k;
+    for (uint8_t i = 0; i < SPLIT_KEYFRAMES / 2 && n_useful > 0; i++) {
+        uint8_t k = useful[(n_useful - 1) * (i + 1) / (SPLIT_KEYFRAMES / 2)];
         if (!taken[k]) {
             taken[k] = true;
             chosen.k[chosen.n++] = k;
         }
     }
-    while (chosen.n < SPLIT_KEYFRAMES && chosen.n < p->n_keyframes) {
+    while (chosen.n < SPLIT_KEYFRAMES && chosen.n < n_useful) {
         uint8_t best = GRRL_MAX_KEYFRAMES;
-        for (uint8_t k = 0; k < p->n_keyframes; k++)
+        for (uint8_t i = 0; i < n_useful; i++) {
+            uint8_t k = useful[i];
             if (!taken[k] && (best == GRRL_MAX_KEYFRAMES || score[k] > score[best]))
                 best = k;
+        }
         taken[best] = true;
         chosen.k[chosen.n++] = best;
     }
     return chosen;
 }
 
-/* A rigid displacement from one keyframe to another, with what its uncertainty needs. */
+/* A rigid displacement from one keyframe to another, with the terms of its uncertainty. */
 struct displacement {
     struct grrl_vec2 from;
     struct grrl_vec2 to;
     float c;
     float s;
+    float size; /* apparent size in the second keyframe; 1 in the first */
     float weight;
     float inertia;
 };
@@ -109,7 +197,7 @@ static bool displacement_of(const struct grrl_perception *p, const uint16_t *slo
 {
     const struct grrl_perception_keyframe *a = &p->keyframe[k0];
     const struct grrl_perception_keyframe *b = &p->keyframe[k1];
-    *d = (struct displacement){.c = 1.0f};
+    *d = (struct displacement){.c = 1.0f, .size = 1.0f};
     unsigned seen = 0;
     for (uint16_t i = 0; i < n; i++) {
         if (a->weight[slots[i]] > 0 && b->weight[slots[i]] > 0) {
@@ -138,12 +226,13 @@ static bool displacement_of(const struct grrl_perception *p, const uint16_t *slo
     if (length > 0.0f) {
         d->c = along / length;
         d->s = across / length;
+        d->size += p->config.sizes_change ? grrl_rigid_growth(p, length, d->inertia) : 0.0f;
     }
     return d->inertia > 0.0f;
 }
 
 /*
- * The features among `slots` that move as the group does, in the chosen keyframes relative to the
+ * The features among `slots` that move with the group in the chosen keyframes, relative to the
  * reference k0; returns how many, members[] holds them.
  */
 static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -162,7 +251,8 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
             if (w0 == 0 || w1 == 0)
                 continue;
-            struct grrl_vec2 x = grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from);
+            struct grrl_vec2 x =
+                grrl_vec2_scale(grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from), d.size);
             struct grrl_vec2 y = grrl_vec2_sub(p->keyframe[k].point[slots[i]], d.to);
             struct grrl_vec2 r = {y.x - (d.c * x.x - d.s * x.y), y.y - (d.s * x.x + d.c * x.y)};
             float variance = (grrl_perception_variance(p, w0) + grrl_perception_variance(p, w1)) *
@@ -211,20 +301,9 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              const float *score, uint16_t *members)
 {
-    struct choice_of_keyframes chosen = telling_keyframes(p, score);
-    uint8_t k0 = 0;
-    unsigned best_seen = 0;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) { /* the reference: most seen, best averaged */
-        unsigned seen = 0;
-        for (uint16_t i = 0; i < n; i++) {
-            uint8_t w = p->keyframe[k].weight[slots[i]];
-            seen += w > 0 ? SEEN + w : 0u;
-        }
-        if (seen > best_seen) {
-            best_seen = seen;
-            k0 = k;
-        }
-    }
+    uint8_t k0;
+    bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
+    struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
     uint16_t best = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {

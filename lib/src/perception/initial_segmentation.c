@@ -1,27 +1,49 @@
 /*
- * initial_segmentation.c: what may be a body before anything has moved. Features of objects lie
- * densely, those of the background do not: each dense group (blob) is one candidate link.
+ * initial_segmentation.c: candidate bodies before anything has moved. Features of objects are
+ * dense, those of the background sparse: each dense group (blob) is one candidate link.
  */
 #include "perception/perception_internal.h"
 
-/* Least difference of the mean logarithms of squared distances on either side of Otsu's threshold:
- * ln 4 = 1.39, a background twice as sparse as the object. Distances within one density differ
- * less. */
+/* Minimum difference between the mean logarithms of squared distances on the two sides of Otsu's
+ * threshold: ln 4 = 1.39 means a background twice as sparse as the object. Distances at a uniform
+ * density differ less. */
 #define DENSITY_CONTRAST 1.4f
 
-/* Features of one object lie this many times their usual distance apart at most. Of points strewn
- * at random over a plane the second nearest is that far away once in 200,000 (Gamma distribution of
- * its squared distance). */
+/* Neighbouring features of one object lie at most this many times their usual distance apart. Among
+ * points scattered at random over a plane, the second nearest is that far away once in 200,000
+ * (Gamma distribution of its squared distance). */
 #define REACH 3.0f
 
-#define LEAST_M2 1e-9f /* added to squared distances (0.03 mm) before their logarithm is taken */
+#define LEAST_M2 1e-9f /* (0.03 mm)^2, added to squared distances before the logarithm */
 
-/* Squared distance from slot i to its second nearest neighbour in the first keyframe. */
-static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
+#define APART_M2 1e9f /* squared distance of features that no keyframe saw together */
+
+/* Squared distance of two features in the first keyframe that saw both. */
+static float first_distance2(const struct grrl_perception *p, uint16_t i, uint16_t j)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
-    float nearest = 1e9f;
-    float second = 1e9f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_keyframe *key = &p->keyframe[k];
+        if (key->weight[i] > 0 && key->weight[j] > 0)
+            return grrl_vec2_distance2(key->point[i], key->point[j]);
+    }
+    return APART_M2;
+}
+
+/* The first keyframe that saw a feature, or n_keyframes. */
+static uint8_t first_keyframe(const struct grrl_perception *p, uint16_t slot)
+{
+    uint8_t k = 0;
+    while (k < p->n_keyframes && p->keyframe[k].weight[slot] == 0)
+        k++;
+    return k;
+}
+
+/* Squared distance from slot i, first seen in keyframe k, to its second nearest neighbour there. */
+static float neighbour_distance2(const struct grrl_perception *p, uint16_t i, uint8_t k)
+{
+    const struct grrl_perception_keyframe *key = &p->keyframe[k];
+    float nearest = APART_M2;
+    float second = APART_M2;
     for (uint16_t j = 0; j < p->n_slots; j++) {
         if (j == i || key->weight[j] == 0)
             continue;
@@ -38,8 +60,7 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i)
 
 static void sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n;
-         i++) { /* insertion sort: once an object, GRRL_MAX_FEATURES values */
+    for (uint16_t i = 1; i < n; i++) { /* insertion sort: once per object */
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -51,9 +72,9 @@ static void sort(float *values, uint16_t n)
 }
 
 /*
- * How far features of one object lie apart at most: three times their usual distance. Features of
- * objects lie densely, those of the background do not; Otsu's threshold (1979) on the logarithms
- * of the sorted distances parts the two, whichever are more.
+ * The largest distance between neighbouring features of one object: three times their usual
+ * distance. Features of objects are dense, those of the background sparse; Otsu's threshold (1979)
+ * on the logarithms of the sorted distances separates the two, whichever are more numerous.
  */
 static float object_reach(float *distance2, uint16_t n)
 {
@@ -76,19 +97,37 @@ static float object_reach(float *distance2, uint16_t n)
     return REACH * grrl_sqrt(distance2[dense / 2]);
 }
 
-/* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
+/* Grows a blob from a slot by adding features closer than sqrt(reach2); returns its size. */
 static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach2, uint8_t blob)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
     uint16_t queue[GRRL_MAX_FEATURES];
     uint16_t n = 1;
     queue[0] = start;
     p->blob_of[start] = blob;
     for (uint16_t next = 0; next < n; next++) {
         for (uint16_t j = 0; j < p->n_slots; j++) {
-            if (p->blob_of[j] == 0 && key->weight[j] > 0 &&
-                grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < reach2) {
+            if (p->blob_of[j] == 0 && first_distance2(p, queue[next], j) < reach2) {
                 p->blob_of[j] = blob;
+                queue[n++] = j;
+            }
+        }
+    }
+    return n;
+}
+
+/* How many features of a body are connected to `start`; reached[] marks them. */
+static uint16_t grow_in_body(const struct grrl_perception *p, uint8_t body, uint16_t start,
+                             bool *reached)
+{
+    uint16_t queue[GRRL_MAX_FEATURES];
+    uint16_t n = 1;
+    queue[0] = start;
+    reached[start] = true;
+    for (uint16_t next = 0; next < n; next++) {
+        for (uint16_t j = 0; j < p->n_slots; j++) {
+            if (p->body_of[j] == body && !reached[j] &&
+                first_distance2(p, queue[next], j) < p->reach2_m2) {
+                reached[j] = true;
                 queue[n++] = j;
             }
         }
@@ -98,31 +137,15 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
 
 bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[0];
     bool reached[GRRL_MAX_FEATURES] = {false};
-    uint16_t queue[GRRL_MAX_FEATURES];
-    for (uint16_t start = 0; start < p->n_slots; start++) {
-        if (p->body_of[start] != body || reached[start] || key->weight[start] == 0)
-            continue;
-        uint16_t n = 1;
-        queue[0] = start;
-        reached[start] = true;
-        for (uint16_t next = 0; next < n; next++) {
-            for (uint16_t j = 0; j < p->n_slots; j++) {
-                if (p->body_of[j] == body && !reached[j] && key->weight[j] > 0 &&
-                    grrl_vec2_distance2(key->point[queue[next]], key->point[j]) < p->reach2_m2) {
-                    reached[j] = true;
-                    queue[n++] = j;
-                }
-            }
-        }
-        if (n >= p->config.min_features)
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] == body && !reached[i] &&
+            grow_in_body(p, body, i, reached) >= p->config.min_features)
             return true;
-    }
     return false;
 }
 
-/* Features of a blob are those of a body, or the background's. */
+/* Assigns the features of a blob to a body, or to the background. */
 static void settle_blob(struct grrl_perception *p, uint8_t blob, bool is_body)
 {
     for (uint16_t j = 0; j < p->n_slots; j++) {
@@ -138,7 +161,7 @@ static void find_blobs(struct grrl_perception *p)
 {
     uint8_t n = 0;
     for (uint16_t i = 0; i < p->n_slots && n < GRRL_MAX_LINKS; i++) {
-        if (p->blob_of[i] != 0 || p->keyframe[0].weight[i] == 0)
+        if (p->blob_of[i] != 0)
             continue;
         uint16_t size = grow_blob(p, i, p->reach2_m2, (uint8_t)(n + 1));
         bool is_body = size >= p->config.min_features + 1;
@@ -157,8 +180,9 @@ void grrl_initial_segmentation(struct grrl_perception *p)
     for (uint16_t i = 0; i < p->n_slots; i++) {
         p->body_of[i] = p->config.static_background ? GRRL_FEATURE_BACKGROUND : 0;
         p->blob_of[i] = p->config.static_background ? 0 : 1;
-        if (p->keyframe[0].weight[i] > 0)
-            values[n++] = neighbour_distance2(p, i);
+        uint8_t k = first_keyframe(p, i);
+        if (k < p->n_keyframes)
+            values[n++] = neighbour_distance2(p, i, k);
     }
     if (!p->config.static_background) {
         grrl_bodies_add(p);

@@ -1,74 +1,81 @@
 /*
- * joints.c: what ties two bodies together.
+ * joints.c: the joint between two bodies.
  *
- * Three models of the relative motion of a pair are compared on all keyframes that saw both:
+ * Three models of the relative motion of a pair are compared over all keyframes that saw both:
  *   revolute    one point of either body stays on one point of the other: 4 parameters
  *   prismatic   no relative turn, sliding along one line: 3 parameters
  *   free        anything; explains all, but pays for each keyframe in which it was needed
- * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
- * sliding), and a joint type is called only when the motion excites it.
+ * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint would explain any
+ * sliding), and a joint type is accepted only if the motion excites it.
  *
- * All are compared in chi squared, -2 ln(likelihood), so that odds are exp(-chi2 / 2). The chi
- * squared of a model with m parameters over n keyframes, 2 residuals each, is expected to be 2 n -
- * m; what it has beyond that is its excess. This is the Laplace approximation of the marginal
- * likelihood with each parameter paid for at the rate of chi squared, 1, which is near enough:
- * revolute and prismatic differ by one parameter, and TYPE_MARGIN is 8. docs/perception.md derives
- * the fits and the evidence.
+ * All are compared in chi squared, -2 ln(likelihood), so odds are exp(-chi2 / 2). A model with m
+ * parameters over n keyframes, 2 residuals each, has an expected chi squared of 2 n - m; its excess
+ * is the rest. This is the Laplace approximation of the marginal likelihood with a charge of 1 in
+ * chi squared per parameter. That is accurate enough: revolute and prismatic differ by one
+ * parameter, and TYPE_MARGIN is 8. docs/perception.md derives the fits and the evidence.
  */
 #include "perception/perception_internal.h"
 
-/* Chi squared that free motion pays in a keyframe that needs it. A rigid pair, the 3 parameters of
- * free motion at 0, reaches 14 by chance once in 340 keyframes: less is no motion. */
+/* Chi squared that free motion pays in a keyframe that needs it. A rigid pair (the 3 parameters of
+ * free motion are 0) reaches 14 by chance once in 340 keyframes: less does not count as motion. */
 #define FREE_COST 14.0f
 
-/* And in all: ten keyframes. Neighbouring keyframes of a push are not independent, so that forty of
- * them must not make free motion impossible. */
+/* Limit on the total: ten keyframes. Neighbouring keyframes of a push are not independent, so forty
+ * of them must not make free motion impossible. */
 #define FREE_COST_MAX 140.0f
 
-/* Chi squared by which a type must be better than the other, and than free motion: odds of 55 to 1
- * (exp(8 / 2)), a probability of 0.98. */
+/* Chi squared by which a type must beat the other type and free motion: odds of 55 to 1 (exp(8 /
+ * 2)), a probability of 0.98. */
 #define TYPE_MARGIN 8.0f
 
-/* The most a keyframe of a push counts against a joint: as much as free motion pays for it, once in
- * 1,100 keyframes by chance. A few frames of a fast body can lie aside by ten standard deviations.
- * Of PRPRPRP with 20% missing and 2% outliers 1.0 instead of 2.5% ended at the cap (seed 47000). */
+/* The most a keyframe of a push counts against a joint: the cost of free motion, reached by chance
+ * once in 1,100 keyframes. A few frames of a fast body can be off by ten standard deviations. With
+ * 20% missing points and 2% outliers, this lowered the trials of PRPRPRP that ended at the cap from
+ * 2.5 to 1.0% (seed 47000). */
 #define MOVING_MISS_MAX FREE_COST
 
-/* Chi squared in favour of a joint where the motion tells nothing: odds of e to 1. Things side by
- * side on the table are rather joined than not. */
+/* Chi squared in favour of a joint if the motion shows nothing: odds of e to 1. Things side by side
+ * on the table are more likely joined than not. */
 #define JOINT_PRIOR 2.0f
 
-/* A common turn counts so much for a slide at most: it leaves odds of 3 million to 1, more would
- * only hide what later pushes say. */
+/* The same for a camera that may move, where the scene need not be one object: things are
+ * independent until proven joined. Odds of 20 to 1 against an untested joint. */
+#define INDEPENDENT_PRIOR (-6.0f)
+
+/* Bodies whose relative size changes by this share are not in one plane. */
+#define SIZES_DIFFER 0.1f
+
+/* A joint less likely than this does not enter the model. */
+#define BELIEVED 0.5f
+
+/* Limit on the evidence for a slide from a common turn: odds of 3 million to 1. More would only
+ * hide the evidence of later pushes. */
 #define TURN_EVIDENCE_MAX 30.0f
 
-/* Of each further push that slid along the same line. Untied things would go within 12 degrees of
- * it, either way, once in exp(4 / 2) = 7 pushes. */
+/* Evidence from each further push that slid along the same line. Independent things would move
+ * within 12 degrees of it, either way, once in exp(4 / 2) = 7 pushes. */
 #define PUSH_EVIDENCE 4.0f
 
-/* Excess beyond which a type does not explain the motion: this, and so many standard deviations of
- * chi squared over all keyframes (2 sqrt(n), for 2 n residuals). Noise alone never gets there (4 in
- * 10^6 trials of ten keyframes); the margin is for bodies that are not quite rigid. */
+/* Excess above which a type does not explain the motion: this plus a number of standard deviations
+ * of chi squared over all keyframes (2 sqrt(n) each, for 2 n residuals). Noise alone hardly ever
+ * gets there (4 in 10^6 trials of ten keyframes); the margin is for bodies that are not quite
+ * rigid. */
 #define MISFIT_BASE 10.0f
 #define MISFIT_SIGMAS 5.0f
 
-/* Of the excess, in the order of joints equally well supported: it decides between two, and is
- * small beside WELL_SUPPORTED within the limits above. */
+/* Weight of the excess in the order of joints that are equally well supported: it decides between
+ * two, but within the limits above it is small compared with WELL_SUPPORTED. */
 #define MISFIT_WEIGHT 0.1f
 
-/* Chi squared better than untied motion; more makes no joint likelier than another (odds of 20 to
- * 1). */
+/* Gain over independent motion in chi squared beyond which one joint ranks no higher than another
+ * (odds of 20 to 1). */
 #define WELL_SUPPORTED 6.0f
 
-/* Distance from its bodies, in units of gap_m, that costs a joint 1 in the order: 40 mm, the width
- * of a link. */
-#define ORDER_SCALE 0.4f
-
-/* A range of motion tells a type if it is so many standard deviations of one keyframe, see
+/* A range of motion excites a type if it is this many standard deviations of one keyframe; see
  * FAR_SIGMAS in apart.c. */
 #define EXCITED_SIGMAS 5.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
@@ -107,7 +114,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
         struct relative *r = &motion->at[motion->n++];
         r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
         r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
-        r->d = grrl_unrotate(pa->pose, grrl_vec2_sub(pb->pose.p, pa->pose.p));
+        r->d = grrl_origin_in(pa, pb);
         r->pa = pa;
         r->pb = pb;
         c += r->c;
@@ -119,11 +126,11 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
 }
 
 /* Variance per axis of the distance between a point of a and a point of b, given their squared
- * distances from the bodies' origins; model error of either body included. */
+ * distances from the origins of the bodies; includes the model error of both. */
 static float point_variance(const struct grrl_perception *p, const struct motion *motion,
                             const struct relative *r, float lever_a2, float lever_b2)
 {
-    float model = p->config.model_error_m;
+    float model = grrl_perception_model_error(p);
     return motion->noise2 * (1.0f / r->pa->weight + 1.0f / r->pb->weight +
                              0.5f * (lever_a2 / (r->pa->inertia + LEAST_INERTIA) +
                                      lever_b2 / (r->pb->inertia + LEAST_INERTIA))) +
@@ -133,8 +140,9 @@ static float point_variance(const struct grrl_perception *p, const struct motion
 static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
                            const struct relative *r)
 {
-    /* the model error of a body's n features acts on its turn like noise of one frame each */
-    float model2 = p->config.model_error_m * p->config.model_error_m;
+    /* the model error of a body's n features affects its turn like noise of one frame each */
+    float model = grrl_perception_model_error(p);
+    float model2 = model * model;
     return (motion->noise2 + 4.0f * model2) *
                (1.0f / (r->pa->inertia + LEAST_INERTIA) + 1.0f / (r->pb->inertia + LEAST_INERTIA)) +
            motion->bend_a * r->pa->weight / (r->pa->inertia + LEAST_INERTIA) +
@@ -146,25 +154,12 @@ static float turn_from_mean(const struct motion *motion, const struct relative *
     return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
 }
 
-/* Whether a keyframe that the fit misses by chi2 may be wrong itself. At rest many frames are
- * averaged, in a push few: a gap and an outlier can draw a fast body aside, and outweigh all else.
- */
+/* Whether a keyframe that the fit misses by chi2 may itself be wrong. At rest many frames are
+ * averaged, in a push only a few: a gap and an outlier can displace a fast body and outweigh
+ * everything else. */
 static bool is_doubtful(const struct motion *motion, uint8_t k, float chi2)
 {
     return !motion->at_rest[k] && chi2 > MOVING_MISS_MAX;
-}
-
-/* Half the extent of a body's features. */
-static float half_extent(const struct grrl_perception *p, uint8_t body)
-{
-    float far2 = 0.0f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            float d2 = grrl_vec2_dot(p->shape[i], p->shape[i]);
-            far2 = d2 > far2 ? d2 : far2;
-        }
-    }
-    return grrl_sqrt(far2);
 }
 
 /* Sums over the keyframes, each weighted by 1 / variance of the distance of the two pivots. */
@@ -194,10 +189,9 @@ static struct pivot_sums sum_for_pivot(const struct grrl_perception *p, const st
 }
 
 /*
- * Least squares for the pivot, a in the frame of body a and b in that of body b. They minimise
- *     sum w |a - R b - d|^2 + |a|^2 / sa^2 + |b|^2 / sb^2,
- * where R and d are turn and shift of b's frame in a's. With M = sum w R, D = sum w d and
- * E = sum w R^T d the normal equations are
+ * Least squares for the pivot, a in the frame of body a and b in that of body b. They minimise sum
+ * w |a - R b - d|^2 + |a|^2 / sa^2 + |b|^2 / sb^2, where R and d are the turn and shift of b's
+ * frame in a's. With M = sum w R, D = sum w d and E = sum w R^T d the normal equations are
  *     (W + 1 / sa^2) a - M b = D,    -M^T a + (W + 1 / sb^2) b = -E.
  * M is a rotation times a number, so that M^T M = |m|^2 I, and eliminating a leaves one scalar, the
  * Schur complement: schur b = M^T D / (W + 1 / sa^2) - E. 1 / schur is the variance of b.
@@ -231,7 +225,8 @@ static float pivot_miss(const struct grrl_perception *p, const struct motion *mo
 }
 
 /* The pivot, how well the motion agrees with it, and the range of the turn. The weights depend on
- * how far the pivot is from either body: half their extent at first, the pivot found after that. */
+ * the distance of the pivot from both bodies: half their extent in the first round, then the pivot
+ * found. */
 static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
                          float hb, struct grrl_joint_fit *fit)
 {
@@ -273,7 +268,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     fit->axis_variance = 0.0f;
 }
 
-/* The sliding point half way between the bodies, so that the turn noise of both counts the same. */
+/* The sliding point halfway between the bodies, so that the turn noise of both counts equally. */
 static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r,
                                     struct grrl_vec2 middle)
 {
@@ -282,11 +277,11 @@ static struct grrl_vec2 slide_point(const struct motion *motion, const struct re
                               r->d.y - 0.5f * (middle.y + turn * middle.x)};
 }
 
-/* A sliding pair: where b's origin is in a's frame in the mean, not weighted, .. */
+/* A sliding pair: the mean of b's origin in a's frame, not weighted, ... */
 struct slide {
     struct grrl_vec2 middle;
-    float lever2;          /* .. its squared distance from the point half way between the bodies, */
-    struct grrl_vec2 mean; /* .. a point of the line, and the sum of weights */
+    float lever2;          /* ... its squared distance from the point halfway between the bodies, */
+    struct grrl_vec2 mean; /* ... a point on the line, and the sum of weights */
     float w;
 };
 
@@ -313,8 +308,8 @@ static struct slide find_middle(const struct grrl_perception *p, const struct mo
     return slide;
 }
 
-/* The line: total least squares, the principal axis of the weighted positions. Returns the sum of
- * squares along it over the variance, whose inverse is the variance of the direction. */
+/* The line by total least squares: the principal axis of the weighted positions. Returns the sum of
+ * squares along it divided by the variance; its inverse is the variance of the direction. */
 static float find_slide_axis(const struct grrl_perception *p, const struct motion *motion,
                              const struct slide *slide, struct grrl_vec2 *axis)
 {
@@ -372,7 +367,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
     fit->axis_variance = 1.0f / (major + 1.0f);
 }
 
-/* What free motion pays: the keyframes that differ from a rigid pair, up to a limit. */
+/* The cost of free motion: it pays for the keyframes that differ from a rigid pair, up to a limit.
+ */
 static float free_cost(const struct grrl_perception *p, const struct motion *motion)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
@@ -391,65 +387,10 @@ static float free_cost(const struct grrl_perception *p, const struct motion *mot
     return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
 }
 
-/* The distance from a point in a body's frame to its third nearest feature: a few features beside
- * a joint may be counted to the wrong body. */
-static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
-{
-    float nearest2[3] = {1e9f, 1e9f, 1e9f};
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
-            float d2 = grrl_vec2_dot(d, d);
-            for (int at = 0; at < 3; at++) {
-                if (d2 < nearest2[at]) {
-                    float t = nearest2[at];
-                    nearest2[at] = d2;
-                    d2 = t;
-                }
-            }
-        }
-    }
-    return grrl_sqrt(nearest2[2]);
-}
-
-/* Distance between the nearest features of two bodies in keyframe k. */
-static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
-{
-    const struct grrl_perception_pose *pb = &p->pose[k][b];
-    const struct grrl_perception_pose *pa = &p->pose[k][a];
-    float best = 1e9f;
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == b) {
-            struct grrl_vec2 world = grrl_transform(pb->pose, p->shape[i]);
-            float d = distance_to_body(p, a, grrl_untransform(pa->pose, world));
-            best = d < best ? d : best;
-        }
-    }
-    return best;
-}
-
-/* Jointed bodies lie side by side: a pivot near both, sliding bodies near each other at both ends.
- */
-static bool is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
-{
-    float gap = p->config.gap_m;
-    if (e->type == GRRL_REVOLUTE) {
-        return distance_to_body(p, e->a, e->fit.in_a) < gap &&
-               distance_to_body(p, e->b, e->fit.in_b) < gap;
-    }
-    gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
-        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
-            return false;
-    }
-    return true;
-}
-
 /*
- * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
- * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
- * distance from the pivot, tells that it stays where it is.
+ * Evidence for a pivot beyond first order: any relative motion with a steady turn and a steady
+ * drift has a pivot; only the curvature of the path, half the squared turn times the distance from
+ * the pivot, shows that it stays in place.
  */
 static float curvature_evidence(const struct grrl_perception *p, const struct motion *motion,
                                 const struct grrl_joint_fit *fit)
@@ -480,8 +421,8 @@ static float curvature_evidence(const struct grrl_perception *p, const struct mo
 }
 
 /*
- * What the motion says for sliding: two things that move in parallel look the same. They are tied
- * if they turned together, or slid along the same line in several pushes.
+ * Evidence for sliding: two things that move in parallel look the same. They are joined if they
+ * turned together, or slid along the same line in several pushes.
  */
 static float sliding_evidence(const struct grrl_perception *p, const struct motion *motion,
                               const struct grrl_joint_fit *fit)
@@ -506,14 +447,20 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
 }
 
 /*
- * Chi squared of untied motion. A free motion explains also what a joint explains, and is then as
- * likely as the joint but for what the motion tells beyond first order.
+ * Chi squared of independent motion. It can also mimic the motion of a joint, and is then as likely
+ * as the joint except for the evidence beyond first order.
  */
 static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
-                         const struct grrl_joint_fit *fit, bool turns, float free)
+                         const struct grrl_joint_evidence *e, float free)
 {
-    float tested = turns ? curvature_evidence(p, motion, fit) : sliding_evidence(p, motion, fit);
-    float untested = fit->excess + tested + JOINT_PRIOR;
+    const struct grrl_joint_fit *fit = &e->fit;
+    bool table = p->config.static_background;
+    bool turns = e->type == GRRL_REVOLUTE;
+    float tested = turns   ? curvature_evidence(p, motion, fit)
+                   : table ? sliding_evidence(p, motion, fit)
+                           : grrl_joint_slide_in_pictures(p, e);
+    tested += turns && !table ? grrl_joint_place_evidence(p, e) : 0.0f;
+    float untested = fit->excess + tested + (table ? JOINT_PRIOR : INDEPENDENT_PRIOR);
     return free < untested ? free : untested;
 }
 
@@ -531,20 +478,25 @@ static void model_probabilities(const float *chi2, float *probability)
         probability[i] /= sum;
 }
 
-/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
-static float distance_cost(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+/*
+ * Whether the relative size of two bodies is constant. It is for bodies in one plane seen from
+ * above, whatever the camera does; a body that approaches the camera alone is on no joint of that
+ * plane.
+ */
+static bool sizes_agree(const struct motion *motion)
 {
-    float scale = ORDER_SCALE * p->config.gap_m;
-    float da = distance_to_body(p, e->a, e->fit.in_a);
-    float db = distance_to_body(p, e->b, e->fit.in_b);
-    if (e->type == GRRL_PRISMATIC) {
-        da = gap_between(p, e->a, e->b, (uint8_t)(p->n_keyframes - 1));
-        db = 0.0f;
+    float least = 1e9f;
+    float most = 0.0f;
+    for (uint8_t k = 0; k < motion->n; k++) {
+        const struct relative *r = &motion->at[k];
+        float ratio = (1.0f + r->pb->growth) / (1.0f + r->pa->growth);
+        least = ratio < least ? ratio : least;
+        most = ratio > most ? ratio : most;
     }
-    return (da * da + db * db) / (scale * scale);
+    return most - least < SIZES_DIFFER * most;
 }
 
-/* Weighs the evidence for a joint between a and b; false: none is supported. */
+/* Weighs the evidence for a joint between a and b; false: no joint is supported. */
 bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
                        struct grrl_joint_evidence *e)
 {
@@ -552,9 +504,11 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     struct grrl_joint_fit revolute;
     struct grrl_joint_fit prismatic;
     collect(p, a, b, &motion);
+    e->told = false;
+    e->doubt = GRRL_REASON_LITTLE;
     if (motion.n < 2)
         return false;
-    fit_revolute(p, &motion, half_extent(p, a), half_extent(p, b), &revolute);
+    fit_revolute(p, &motion, grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);
     float free = free_cost(p, &motion);
     bool is_revolute = revolute.excess < prismatic.excess;
@@ -564,13 +518,21 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->b = b;
     e->weight = free - e->fit.excess;
     e->odds = is_revolute ? prismatic.excess - revolute.excess : revolute.excess - prismatic.excess;
-    float untied = untied_cost(p, &motion, &e->fit, is_revolute, free);
+    float untied = untied_cost(p, &motion, e, free);
     float chi2[3] = {revolute.excess, prismatic.excess, untied};
     model_probabilities(chi2, e->p);
     float support = untied - e->fit.excess;
     float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
-    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) - distance_cost(p, e) - misfit;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) -
+               grrl_joint_distance_cost(p, e) - misfit;
     bool fits = e->fit.excess < MISFIT_BASE + 2.0f * MISFIT_SIGMAS * grrl_sqrt((float)motion.n);
-    return fits && e->fit.excited && e->odds > TYPE_MARGIN && e->weight > TYPE_MARGIN &&
-           is_near(p, e);
+    e->doubt = !e->fit.excited                                        ? GRRL_REASON_LITTLE
+               : !sizes_agree(&motion)                                ? GRRL_REASON_SIZES
+               : !fits || e->odds <= TYPE_MARGIN                      ? GRRL_REASON_NO_TYPE
+               : e->weight <= TYPE_MARGIN || e->p[e->type] < BELIEVED ? GRRL_REASON_UNPROVEN
+                                                                      : GRRL_REASON_NONE;
+    e->told = e->doubt == GRRL_REASON_NONE;
+    if (e->told && !grrl_joint_is_near(p, e, support))
+        e->doubt = GRRL_REASON_FAR;
+    return e->doubt == GRRL_REASON_NONE;
 }

@@ -3,22 +3,39 @@
  */
 #include "perception/perception_internal.h"
 
-/* A point of a keyframe this many standard deviations off its body is an outlier: noise reaches it
- * once in 270,000 points, see outliers.c. */
+/* A point this many standard deviations off its body in a keyframe is an outlier: noise reaches
+ * that once in 270,000 points, see outliers.c. */
 #define OFF_SIGMAS 5.0f
 
-/* Of a body's points in a keyframe one in this many may be outliers; more are no outliers, the body
- * is wrong. */
+/* One in this many points of a body in a keyframe may be outliers; if there are more, the body is
+ * wrong instead. */
 #define OFF_SHARE 3
 
-#define SEEN 1000u /* outweighs any number of frames averaged, 255 at most */
+#define SEEN 1000u /* outweighs any number of frames averaged, at most 255 */
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+/* Standard deviation of growth: a camera may approach or zoom by a third. A body never appears less
+ * than half as large as before. */
+#define GROWTH_SD 0.3f
+#define LEAST_GROWTH (-0.5f)
+
+/* Standard deviations of a size in a keyframe within which a change may be noise. */
+#define SIZE_SIGMAS 3.0f
+
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
+
+float grrl_rigid_growth(const struct grrl_perception *p, float length, float inertia)
+{
+    float prior = grrl_perception_variance(p, 1) / (GROWTH_SD * GROWTH_SD);
+    float growth = (length - inertia) / (inertia + prior);
+    return growth > LEAST_GROWTH ? growth : LEAST_GROWTH;
+}
 
 /* Least-squares pose of weighted points (Umeyama 1991, in the plane: no trigonometry needed). */
-static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
-                     const struct grrl_vec2 *shape, struct grrl_perception_pose *out)
+static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
+                           uint16_t n, const struct grrl_vec2 *shape, bool grows,
+                           struct grrl_perception_pose *out)
 {
+    const struct grrl_perception_keyframe *key = &p->keyframe[k];
     float weight = 0.0f;
     struct grrl_vec2 world = {0.0f, 0.0f};
     struct grrl_vec2 local = {0.0f, 0.0f};
@@ -55,12 +72,39 @@ static void fit_pose(const struct grrl_perception_keyframe *key, const uint16_t 
         return;
     out->pose.c = along / length;
     out->pose.s = across / length;
-    out->pose.p = grrl_vec2_sub(world, grrl_rotate(out->pose, local));
+    out->growth = grows ? grrl_rigid_growth(p, length, inertia) : 0.0f;
+    out->pose.p =
+        grrl_vec2_sub(world, grrl_rotate(out->pose, grrl_vec2_scale(local, 1.0f + out->growth)));
     out->weight = weight;
     out->inertia = inertia;
 }
 
-/* The keyframe that saw most of these features, the earliest of equals. */
+static void fit_pose(const struct grrl_perception *p, uint8_t k, const uint16_t *slots, uint16_t n,
+                     const struct grrl_vec2 *shape, struct grrl_perception_pose *out)
+{
+    fit_sized_pose(p, k, slots, n, shape, p->config.sizes_change, out);
+}
+
+float grrl_perception_size_change(const struct grrl_perception *perception, uint8_t body)
+{
+    const struct grrl_perception *p = perception;
+    uint16_t slots[GRRL_MAX_FEATURES];
+    uint16_t n = body < p->n_bodies ? grrl_rigid_slots(p, body, slots) : 0;
+    float least = 1e9f;
+    float most = -1e9f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        struct grrl_perception_pose pose;
+        fit_sized_pose(p, k, slots, n, p->shape, true, &pose);
+        if (!(pose.weight > 0.0f))
+            continue;
+        float sd = grrl_sqrt(grrl_perception_variance(p, 1) / (pose.inertia + LEAST_INERTIA));
+        least = pose.growth + SIZE_SIGMAS * sd < least ? pose.growth + SIZE_SIGMAS * sd : least;
+        most = pose.growth - SIZE_SIGMAS * sd > most ? pose.growth - SIZE_SIGMAS * sd : most;
+    }
+    return most > least ? most - least : 0.0f;
+}
+
+/* The keyframe that saw most of these features; the earliest in case of a tie. */
 static uint8_t reference_keyframe(const struct grrl_perception *p, const uint16_t *slots,
                                   uint16_t n)
 {
@@ -100,7 +144,7 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
         float w = (float)p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w > 0.0f && pose->weight > 0.0f) {
-            struct grrl_vec2 q = grrl_untransform(pose->pose, p->keyframe[k].point[slot]);
+            struct grrl_vec2 q = grrl_to_local(pose, p->keyframe[k].point[slot]);
             sum = grrl_vec2_add(sum, grrl_vec2_scale(q, w));
             weight += w;
         }
@@ -111,52 +155,101 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
     return true;
 }
 
-/* Generalised Procrustes analysis (Gower 1975): poses for a shape, the shape for poses, twice. */
-void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
-                    struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride)
+/* Features whose place on the body is known come first, then the others. */
+struct known {
+    uint16_t n; /* number of known ones */
+    uint16_t slot[GRRL_MAX_FEATURES];
+};
+
+/* The initial shape is what one keyframe saw, relative to its centroid; features it did not see
+ * come later. */
+static void begin_shape(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                        struct grrl_vec2 *shape, struct known *known)
 {
-    uint8_t reference = reference_keyframe(p, slots, n);
+    const struct grrl_perception_keyframe *key = &p->keyframe[reference_keyframe(p, slots, n)];
     struct grrl_vec2 mean = {0.0f, 0.0f};
     unsigned seen = 0;
     for (uint16_t i = 0; i < n; i++) {
-        if (p->keyframe[reference].weight[slots[i]] > 0) {
-            mean = grrl_vec2_add(mean, p->keyframe[reference].point[slots[i]]);
+        if (key->weight[slots[i]] > 0) {
+            mean = grrl_vec2_add(mean, key->point[slots[i]]);
             seen++;
         }
     }
     mean = grrl_vec2_scale(mean, seen > 0 ? 1.0f / (float)seen : 0.0f);
-    uint16_t known[GRRL_MAX_FEATURES]; /* in the reference; the rest is placed afterwards */
-    uint16_t n_known = 0;
+    uint16_t unknown = n;
+    known->n = 0;
     for (uint16_t i = 0; i < n; i++) {
-        if (p->keyframe[reference].weight[slots[i]] > 0) {
-            shape[slots[i]] = grrl_vec2_sub(p->keyframe[reference].point[slots[i]], mean);
-            known[n_known++] = slots[i];
+        if (key->weight[slots[i]] > 0) {
+            shape[slots[i]] = grrl_vec2_sub(key->point[slots[i]], mean);
+            known->slot[known->n++] = slots[i];
         } else {
             shape[slots[i]] = (struct grrl_vec2){0.0f, 0.0f};
+            known->slot[--unknown] = slots[i];
         }
     }
-    for (int round = 0; round < 2; round++) {
-        for (uint8_t k = 0; k < p->n_keyframes; k++) {
-            fit_pose(&p->keyframe[k], round == 0 ? known : slots, round == 0 ? n_known : n, shape,
-                     &poses[k * stride]);
-        }
-        for (uint16_t i = 0; i < n; i++)
-            (void)grrl_rigid_place(p, slots[i], poses, stride, &shape[slots[i]]);
-        if (round == 0)
-            centre(slots, n, shape);
-    }
-    for (uint8_t k = 0; k < p->n_keyframes; k++)
-        fit_pose(&p->keyframe[k], slots, n, shape, &poses[k * stride]);
 }
 
-/* Farther off its body than noise, and a joint too small to be told, explain. */
+/* Places the features that were seen with a known pose; returns whether there were any. */
+static bool place_unknown(const struct grrl_perception *p, uint16_t n, struct grrl_vec2 *shape,
+                          const struct grrl_perception_pose *poses, size_t stride,
+                          struct known *known)
+{
+    uint16_t before = known->n;
+    for (uint16_t i = known->n; i < n; i++) {
+        uint16_t slot = known->slot[i];
+        if (grrl_rigid_place(p, slot, poses, stride, &shape[slot])) {
+            known->slot[i] = known->slot[known->n];
+            known->slot[known->n++] = slot;
+        }
+    }
+    return known->n > before;
+}
+
+/*
+ * A body outlives its features: the known features give poses, these place other features seen at
+ * the same time, and those give poses in keyframes that saw none of the first.
+ */
+static void spread_shape(const struct grrl_perception *p, uint16_t n, struct grrl_vec2 *shape,
+                         struct grrl_perception_pose *poses, size_t stride, struct known *known)
+{
+    while (place_unknown(p, n, shape, poses, stride, known))
+        for (uint8_t k = 0; k < p->n_keyframes; k++)
+            if (!(poses[k * stride].weight > 0.0f))
+                fit_pose(p, k, known->slot, known->n, shape, &poses[k * stride]);
+}
+
+/* Generalised Procrustes analysis (Gower 1975): poses for a shape, then the shape for the poses,
+ * twice. */
+void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                    struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride)
+{
+    struct known known;
+    begin_shape(p, slots, n, shape, &known);
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        fit_pose(p, k, known.slot, known.n, shape, &poses[k * stride]);
+    spread_shape(p, n, shape, poses, stride, &known);
+    bool all = known.n == n;
+    const uint16_t *fitted = all ? slots : known.slot;
+    for (uint16_t i = 0; i < known.n; i++)
+        (void)grrl_rigid_place(p, fitted[i], poses, stride, &shape[fitted[i]]);
+    centre(fitted, known.n, shape);
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        fit_pose(p, k, fitted, known.n, shape, &poses[k * stride]);
+    for (uint16_t i = 0; i < known.n; i++)
+        (void)grrl_rigid_place(p, fitted[i], poses, stride, &shape[fitted[i]]);
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        fit_pose(p, k, fitted, known.n, shape, &poses[k * stride]);
+}
+
+/* Whether a point is farther off its body than noise, or a joint too small to detect, can explain.
+ */
 static bool is_off(const struct grrl_perception *p, uint8_t weight, float d2)
 {
     float least = p->config.min_slide_m * p->config.min_slide_m;
     return d2 > least && d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 
-/* The place in slots of the point farthest off its body in keyframe k, n: none is off. */
+/* The index in `slots` of the point farthest off its body in keyframe k; n: none is off. */
 static uint16_t farthest_off(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
                              uint16_t n, const struct grrl_vec2 *shape,
                              const struct grrl_perception_pose *pose)
@@ -165,7 +258,7 @@ static uint16_t farthest_off(const struct grrl_perception *p, uint8_t k, const u
     float worst2 = 0.0f;
     for (uint16_t i = 0; i < n; i++) {
         float d2 = grrl_vec2_distance2(p->keyframe[k].point[slots[i]],
-                                       grrl_transform(pose->pose, shape[slots[i]]));
+                                       grrl_to_world(pose, shape[slots[i]]));
         if (d2 > worst2 && is_off(p, p->keyframe[k].weight[slots[i]], d2)) {
             worst = i;
             worst2 = d2;
@@ -190,7 +283,7 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
         while (pose.weight > 0.0f && n_kept >= least &&
                (worst = farthest_off(p, k, kept, n_kept, shape, &pose)) < n_kept) {
             kept[worst] = kept[--n_kept];
-            fit_pose(&p->keyframe[k], kept, n_kept, shape, &pose);
+            fit_pose(p, k, kept, n_kept, shape, &pose);
         }
         if (n_kept >= least)
             poses[k * stride] = pose;
@@ -209,8 +302,7 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w == 0 || !(pose->weight > 0.0f))
             continue;
-        struct grrl_vec2 r =
-            grrl_vec2_sub(p->keyframe[k].point[slot], grrl_transform(pose->pose, local));
+        struct grrl_vec2 r = grrl_vec2_sub(p->keyframe[k].point[slot], grrl_to_world(pose, local));
         float lever2 = grrl_vec2_dot(local, local);
         float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
                          0.5f * noise2 * lever2 / (pose->inertia + LEAST_INERTIA);
