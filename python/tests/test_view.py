@@ -241,6 +241,16 @@ def test_one_trial(log):
         whole.only(9)
 
 
+def test_snippet_of_the_page(log, tmp_path):
+    text = (ROOT / "docs" / "view.md").read_text(encoding="utf-8")
+    block, = re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    (tmp_path / "run.lcm").symlink_to(log)
+    done = subprocess.run([sys.executable, "-W", "error", "-c", block], cwd=tmp_path, capture_output=True,
+                          text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "'discovered'" in done.stdout and "D(lb, " in done.stdout
+
+
 # --- what the page gets
 
 

@@ -289,6 +289,7 @@ def test_truth_on_request(browser, log, tmp_path):
 
 
 def test_log_through_the_server(browser, log):
+    log = pathlib.Path(os.environ.get("GRRL_VIEW_LOG", log))  # one of your own, to measure
     viewer = Viewer(log)
     try:
         browser.open(viewer.url)
@@ -415,16 +416,18 @@ def test_bus_delay(browser):
     viewer = Viewer("--live", "--lcm-url", URL)
     try:
         browser.open(viewer.url)
-        browser.value("window.drawn = []; window.draw = show; show = () => { draw(); "
-                      "drawn.push([state.run.frames.length, Date.now()]); }; 0")
-        bus, sent = lcm.LCM(URL), []
-        for seq in range(1, 151):
-            sent.append(time.time())
-            bus.publish("GRRL_POINTS", points(seq, SQUARE + 0.001 * seq, mode=0, utime=seq * 33_333))
+        browser.value("window.drawn = []; window.draw = show; show = () => { draw(); const last = "
+                      "state.run.frames[state.at]; if (last) drawn.push([Math.round(last.x[0] * "
+                      "state.run.length_m * 1000), Date.now()]); }; 0")
+        bus, sent = lcm.LCM(URL), {}
+        for seq in range(1, 151):  # a point is at seq millimetres; the last frame is always kept
+            sent[seq] = time.time()
+            bus.publish("GRRL_POINTS", points(seq, SQUARE + 0.001 * seq, utime=seq * 33_333,
+                                              phase=3 if seq == 150 else 1))
             time.sleep(1 / 30)
-        wait(lambda: browser.value("state.run.frames.length") == 150, "the last frame")
-        drawn = browser.value("drawn")
-        delays = sorted(min(t for n, t in drawn if n >= i + 1) / 1000 - at for i, at in enumerate(sent))
+        drawn = wait(lambda: browser.value("drawn.length && drawn.at(-1)[0] === 150 && drawn"),
+                     "the last frame")
+        delays = sorted(min(t for n, t in drawn if n >= seq) / 1000 - at for seq, at in sent.items())
         print(f"delay from the bus to the canvas: median {delays[75]:.3f} s, longest {delays[-1]:.3f} s")
     finally:
         assert viewer.stop() == 0

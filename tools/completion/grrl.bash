@@ -49,4 +49,4 @@ _grrl() {
 }
 
 complete -o filenames -F _grrl grrl-agent grrl-bridge grrl-evaluate grrl-experiment grrl-perceive \
-    grrl-sim grrl-term grrl-track
+    grrl-sim grrl-term grrl-track grrl-view

@@ -18,7 +18,7 @@ function put(id, string) {
 
 // --- texts
 
-const number = (x, digits) => x.toFixed(digits).replace("-", "\u2212");
+const number = (x, digits) => x.toFixed(digits).replace(/^-(?=[0.]*[1-9])/, "\u2212").replace("-", "");
 
 function excursion(joint) {
   if (joint.type === "revolute") {

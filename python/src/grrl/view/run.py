@@ -136,20 +136,16 @@ def motion_of(model: ModelSeen, ids: np.ndarray, xy: np.ndarray) -> np.ndarray:
     link = model.link_of[place]
     p = model.at[place]
     good = (model.ids[place] == ids) & (link >= 0) & ~np.isnan(p[:, 0])
-    link, p, q = link[good], p[good].astype(np.float64), xy[good].astype(np.float64)
-
-    def total(values: np.ndarray) -> np.ndarray:
-        return np.bincount(link, values, n)
-
-    count = np.maximum(np.bincount(link, minlength=n), 1)
-    pc = np.stack([total(p[:, 0]), total(p[:, 1])], 1) / count[:, None]
-    qc = np.stack([total(q[:, 0]), total(q[:, 1])], 1) / count[:, None]
-    dp, dq = p - pc[link], q - qc[link]
-    angle = np.arctan2(total(dp[:, 0] * dq[:, 1] - dp[:, 1] * dq[:, 0]), total((dp * dq).sum(1)))
+    of_link = (link == np.arange(n)[:, None]) & good
+    px, py = np.where(good, p.T, 0.0).astype(np.float64)
+    qx, qy = xy.T.astype(np.float64)
+    sums = of_link @ np.stack([px, py, qx, qy, px * qx + py * qy, px * qy - py * qx], axis=1)
+    count = of_link.sum(axis=1)
+    mpx, mpy, mqx, mqy, dot, cross = sums.T / np.maximum(count, 1)
+    angle = np.arctan2(cross - (mpx * mqy - mpy * mqx), dot - (mpx * mqx + mpy * mqy))
     c, s = np.cos(angle), np.sin(angle)
-    turned = np.stack([c * pc[:, 0] - s * pc[:, 1], s * pc[:, 0] + c * pc[:, 1]], 1)
-    motion = np.column_stack([qc - turned, angle])
-    motion[np.bincount(link, minlength=n) < 2] = 0
+    motion = np.stack([mqx - (c * mpx - s * mpy), mqy - (s * mpx + c * mpy), angle], axis=1)
+    motion[count < 2] = 0
     return motion.astype(np.float32)
 
 
@@ -256,9 +252,10 @@ class Run:
         trial = self._enter(m["trial_id"])
         if m["ack_cmd_seq"] > 0:
             self.trials[trial].pushes = max(self.trials[trial].pushes, m["ack_cmd_seq"])
+        xy = np.empty((m["id"].size, 2), np.float32)
         order = np.argsort(m["id"], kind="stable")
-        frame = Frame(self._time_of(m), trial, m["id"][order],
-                      np.stack([m["x"][order], m["y"][order]], 1), m["phase"], m["ack_cmd_seq"])
+        xy[:, 0], xy[:, 1] = m["x"][order], m["y"][order]
+        frame = Frame(self._time_of(m), trial, m["id"][order], xy, m["phase"], m["ack_cmd_seq"])
         self.frames.append(frame)
         self._refer()
         if self._most and len(self.frames) > self._most:

@@ -120,8 +120,13 @@ TYPES = {name: _type(name, text) for name, text in _MEMBERS.items()}
 def _check(kind: _Type, message: dict[str, Any]) -> None:
     for name, (low, high) in kind.ranges.items():
         value = message[name]
-        if not (np.all((value >= low) & (value <= high)) if isinstance(value, np.ndarray)
-                else all(low <= v <= high for v in (value if isinstance(value, tuple) else (value,)))):
+        if isinstance(value, np.ndarray):  # NaN fails, too
+            good = value.size == 0 or (value.min() >= low and value.max() <= high)
+        elif isinstance(value, tuple):
+            good = all(low <= v <= high for v in value)
+        else:
+            good = low <= value <= high
+        if not good:
             raise ValueError(f"{kind.name}: {name} must be {low} to {high}")
     if kind.name != "model_t":
         return
