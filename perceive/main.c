@@ -31,7 +31,7 @@ static FILE *open_input(const char *path)
     return file;
 }
 
-/* Whether all that was written to a file has got there. */
+/* Closes a file; whether everything was written. */
 static bool close_output(FILE *file, const char *path)
 {
     bool good = fflush(file) == 0 && ferror(file) == 0;
@@ -141,7 +141,7 @@ static const char *reason(enum grrl_run_result result, enum grrl_status status)
         return "the profile camera is for pixels: name the columns x_px and y_px, or give --unit "
                "px";
     case GRRL_RUN_FEW_FOR_NOISE:
-        return "--noise auto: too few points that are seen in three frames in a row; give --noise "
+        return "--noise auto: too few points are visible in three consecutive frames; give --noise "
                "X";
     case GRRL_RUN_NO_NOISE:
         return "--noise auto: the points do not scatter, or are rounded; give --noise X";

@@ -6,7 +6,8 @@
 #include "doubts.h"
 #include "pace.h"
 
-/* A body whose size changes by this share is no plane that a camera sees from one distance. */
+/* A body whose size changes by this share is not planar and at a constant distance from the camera.
+ */
 #define SIZE_CHANGE 0.05f
 
 static const float pixel_m = 0.001f;
@@ -35,7 +36,7 @@ static struct grrl_frame frame_of(const struct grrl_tracks *tracks, size_t i)
                                tracks->y + in->first};
 }
 
-/* What the points scatter, of all frames: a file does not tell when things were at rest. */
+/* Measures the noise over all frames: a file does not say when things were at rest. */
 static enum grrl_status measure_noise(struct grrl_noise *noise, const struct grrl_tracks *tracks,
                                       float *noise_m)
 {
@@ -48,10 +49,10 @@ static enum grrl_status measure_noise(struct grrl_noise *noise, const struct grr
 }
 
 /*
- * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. What was believed after a push counts in what is believed after the next, as it
- * does in the agent. The last frame shows where all has come to lie; of two pictures nobody saw
- * the push between them. Ends early where there are more tracks than the library holds.
+ * Replays the recording as pushes: frames at rest are averaged, others become keyframes when
+ * something has moved enough. As in the agent, the estimate after each push builds on the previous
+ * one. The last frame counts as rest; with only two frames, the push between them was not seen.
+ * Ends early if there are more tracks than the library holds.
  */
 static enum grrl_status observe(struct grrl_perception *perception,
                                 const struct grrl_tracks *tracks)
@@ -67,14 +68,14 @@ static enum grrl_status observe(struct grrl_perception *perception,
             return GRRL_ERR_FULL;
         if (tracks->frame[i].settled) {
             enum grrl_status status = grrl_perception_update(perception);
-            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen: perhaps later */
+            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen yet */
                 return status;
         }
     }
     return grrl_perception_update(perception);
 }
 
-/* Whether the size of a body changes by so much that rigid bodies do not hold. */
+/* Whether the size of a body changes too much for the rigid model. */
 static bool sizes_change(const struct grrl_perception *perception)
 {
     const struct grrl_model *model = grrl_perception_model(perception);
@@ -93,8 +94,8 @@ static unsigned unassigned(const struct grrl_model *model)
 }
 
 /*
- * Before a camera that zooms, or that something nears, a rigid body falls into slices. Once more
- * with bodies that may grow; that holds if it explains no fewer points with fewer bodies.
+ * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
+ * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
  */
 static void observe_growing(struct grrl_run *run, const struct grrl_perception_config *config,
                             const struct grrl_tracks *tracks)
@@ -113,7 +114,7 @@ static void observe_growing(struct grrl_run *run, const struct grrl_perception_c
         run->perception = run->rigid;
 }
 
-/* More tracks than the library holds: once more, with those that tell most. */
+/* More tracks than the library holds: tries again with the most informative ones. */
 static enum grrl_status observe_chosen(struct grrl_run *run,
                                        const struct grrl_perception_config *config,
                                        struct grrl_tracks *tracks)

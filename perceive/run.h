@@ -19,7 +19,7 @@ enum {
     GRRL_RUN_TERM_BYTES = 32 * GRRL_RUN_TERM_NODES
 };
 
-/* Links from this length on are called large; as for the learner. */
+/* Links at least this long are labelled large, as for the learner. */
 #define GRRL_RUN_LARGE_M 0.15f
 
 struct grrl_run_config {
@@ -56,7 +56,7 @@ struct grrl_run {
     char term[GRRL_RUN_TERM_BYTES];
 };
 
-/* What a unit is called, and its metres; a pixel is given to the library as a millimetre. */
+/* The name of a unit, and its metres; the library gets a pixel as a millimetre. */
 struct grrl_scale {
     const char *name;
     float metres;
