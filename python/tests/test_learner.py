@@ -113,6 +113,6 @@ def test_nothing_to_push():
 
 
 def test_a_scene_with_nothing_to_push(monkeypatch):
-    monkeypatch.setattr(grrl.world, "settle", lambda learner, world: None)  # a camera that sees nothing
+    monkeypatch.setattr(grrl.world, "settle", lambda learner, world: learner.perceive())  # no frame
     with pytest.raises(RuntimeError, match="nothing to push; less noise"):
         grrl.run_trial(grrl.Learner("learn"), "RR")
