@@ -113,6 +113,10 @@ def test_nothing_to_push():
 
 
 def test_a_scene_with_nothing_to_push(monkeypatch):
-    monkeypatch.setattr(grrl.world, "settle", lambda learner, world: learner.perceive())  # no frame
+    def settle(learner, world):
+        learner.observe(np.array([[0.5, 0.5]]))  # one point is no link
+        learner.perceive()
+
+    monkeypatch.setattr(grrl.world, "settle", settle)
     with pytest.raises(RuntimeError, match="nothing to push; less noise"):
         grrl.run_trial(grrl.Learner("learn"), "RR")
