@@ -77,7 +77,7 @@ void add_pairs(nb::dict &dict, const grrl_perception &perception, const grrl_mod
     std::vector<double> p;
     for (int a = 0; a < model.n_bodies; a++) {
         for (int b = a + 1; b < model.n_bodies; b++) {
-            grrl_pair pair{GRRL_RELATION_UNDETERMINED, 0.0f, 0.0f, 0.0f};
+            grrl_pair pair{}; /* undetermined */
             (void)!grrl_perception_pair(&perception, static_cast<uint8_t>(a),
                                         static_cast<uint8_t>(b), &pair);
             if (pair.relation == GRRL_RELATION_JOINED)
