@@ -84,17 +84,27 @@ static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uin
            grrl_structure_turn_as_one(p, a, b);
 }
 
+/* Fits again the bodies that lost or gained features: of the others nothing else would come. */
 static bool reassign_once(struct grrl_perception *p)
 {
-    bool changed = false;
+    bool changed[GRRL_MAX_LINKS] = {false};
+    bool any = false;
     for (uint16_t i = 0; i < p->n_slots; i++) {
+        uint8_t was = p->body_of[i];
         uint8_t best = grrl_assign_best(p, i);
-        changed = changed || p->body_of[i] != best;
+        if (was == best)
+            continue;
+        any = true;
         p->body_of[i] = best;
+        if (was < p->n_bodies)
+            changed[was] = true;
+        if (best < p->n_bodies)
+            changed[best] = true;
     }
-    if (changed)
-        fit_all(p);
-    return changed;
+    for (uint8_t b = 0; b < p->n_bodies; b++)
+        if (changed[b])
+            fit_body(p, b);
+    return any;
 }
 
 /* Features to the body they move with, poses to the features, until nothing changes. */
