@@ -239,6 +239,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
 {
     float cost[GRRL_MAX_FEATURES] = {0.0f};
     float count[GRRL_MAX_FEATURES] = {0.0f};
+    const float lost = INLIER_COST * (float)chosen->n; /* above it no keyframe to come helps */
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
@@ -247,7 +248,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w0 = p->keyframe[k0].weight[slots[i]];
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
-            if (w0 == 0 || w1 == 0)
+            if (w0 == 0 || w1 == 0 || cost[i] > lost)
                 continue;
             struct grrl_vec2 x =
                 grrl_vec2_scale(grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from), d.size);
@@ -312,8 +313,11 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
         for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
             uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
+            bool same = n_grown == n_group && memcmp(group, grown, n_grown * sizeof group[0]) == 0;
             memcpy(group, grown, n_grown * sizeof group[0]);
             n_group = n_grown;
+            if (same) /* it follows itself */
+                break;
         }
         if (n_group > best) {
             best = n_group;
