@@ -32,6 +32,7 @@ void grrl_bodies_add(struct grrl_perception *p)
 
 static void fit_body(struct grrl_perception *p, uint8_t body)
 {
+    p->is_assigned = false;
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t n = grrl_rigid_slots(p, body, slots);
     grrl_rigid_fit(p, slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS);
@@ -46,6 +47,7 @@ static void fit_all(struct grrl_perception *p)
 /* Takes a body out of the list; its features must be elsewhere. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
+    p->is_assigned = false;
     for (uint16_t i = 0; i < p->n_slots; i++)
         if (p->body_of[i] > body && p->body_of[i] < p->n_bodies)
             p->body_of[i]--;
@@ -107,11 +109,12 @@ static bool reassign_once(struct grrl_perception *p)
     return any;
 }
 
-/* Features to the body they move with, poses to the features, until nothing changes. */
+/* Features to the body they move with, poses to the features, until nothing changes; nor does it if
+ * no body has since. */
 static void reassign(struct grrl_perception *p)
 {
-    for (int round = 0; round < REASSIGN_ROUNDS && reassign_once(p); round++) {
-    }
+    for (int round = 0; round < REASSIGN_ROUNDS && !p->is_assigned; round++)
+        p->is_assigned = !reassign_once(p);
 }
 
 /* Bodies with too few features are none. */
@@ -314,6 +317,7 @@ void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0)
         grrl_initial_segmentation(p);
+    p->is_assigned = false;
     p->rest_error_m = grrl_rest_error(p);
     for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = grrl_assign_moves(p, i);
