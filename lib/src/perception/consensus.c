@@ -32,7 +32,10 @@
 #define INLIER_COST 3.5f
 
 #define GROW_ROUNDS 3 /* a group grows along a link, then settles */
-#define SEEN 100u     /* outweighs the number of frames averaged, 60 at most */
+
+/* Settled groups that are remembered: a split is between few parts. */
+#define SETTLED_MAX 4
+#define SEEN 100u /* outweighs the number of frames averaged, 60 at most */
 
 /* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -241,6 +244,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
 {
     float cost[GRRL_MAX_FEATURES] = {0.0f};
     float count[GRRL_MAX_FEATURES] = {0.0f};
+    const float lost = INLIER_COST * (float)chosen->n; /* above it no keyframe to come helps */
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
@@ -249,7 +253,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w0 = p->keyframe[k0].weight[slots[i]];
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
-            if (w0 == 0 || w1 == 0)
+            if (w0 == 0 || w1 == 0 || cost[i] > lost)
                 continue;
             struct grrl_vec2 x =
                 grrl_vec2_scale(grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from), d.size);
@@ -297,6 +301,55 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
     return n_group;
 }
 
+/* Groups that grow no more: to another seed that comes to one of them, nothing else happens. */
+struct settled {
+    uint8_t n;
+    uint32_t bits[SETTLED_MAX][(GRRL_MAX_FEATURES + 31) / 32];
+};
+
+static void set_bits(const uint16_t *group, uint16_t n, uint32_t *bits)
+{
+    for (uint16_t i = 0; i < n; i++)
+        bits[group[i] / 32] |= UINT32_C(1) << group[i] % 32;
+}
+
+static bool is_settled(const struct settled *settled, const uint16_t *group, uint16_t n)
+{
+    uint32_t bits[(GRRL_MAX_FEATURES + 31) / 32] = {0};
+    set_bits(group, n, bits);
+    for (uint8_t i = 0; i < settled->n; i++)
+        if (memcmp(bits, settled->bits[i], sizeof bits) == 0)
+            return true;
+    return false;
+}
+
+static void remember(struct settled *settled, const uint16_t *group, uint16_t n)
+{
+    if (settled->n == SETTLED_MAX)
+        return;
+    memset(settled->bits[settled->n], 0, sizeof settled->bits[0]);
+    set_bits(group, n, settled->bits[settled->n++]);
+}
+
+/* Lets a group take in what follows it and lose what does not; returns its size. */
+static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t k0,
+                     const struct choice_of_keyframes *chosen, struct settled *settled,
+                     uint16_t *group, uint16_t n_group)
+{
+    uint16_t grown[GRRL_MAX_FEATURES];
+    for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
+        uint16_t n_grown = followers(p, slots, n, group, n_group, k0, chosen, grown);
+        bool same = n_grown == n_group && memcmp(group, grown, n_grown * sizeof group[0]) == 0;
+        memcpy(group, grown, n_grown * sizeof group[0]);
+        n_group = n_grown;
+        if (same)
+            remember(settled, group, n_group);
+        if (same || is_settled(settled, group, n_group))
+            break;
+    }
+    return n_group;
+}
+
 /* The largest set of features in `slots` that moved as one; returns its size, members[]. */
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              const float *score, uint16_t *members)
@@ -306,17 +359,13 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
     uint16_t best = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
+    struct settled settled = {0};
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
         uint16_t group[GRRL_MAX_FEATURES];
-        uint16_t grown[GRRL_MAX_FEATURES];
         if (p->keyframe[k0].weight[slots[i]] == 0)
             continue;
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
-        for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
-            uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
-            memcpy(group, grown, n_grown * sizeof group[0]);
-            n_group = n_grown;
-        }
+        n_group = grow(p, slots, n, k0, &chosen, &settled, group, n_group);
         if (n_group > best) {
             best = n_group;
             memcpy(members, group, n_group * sizeof group[0]);

@@ -291,13 +291,13 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
 }
 
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
-                      const struct grrl_perception_pose *poses, size_t stride, float cap,
+                      const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n)
 {
     float cost = 0.0f;
     float noise2 = p->config.noise_m * p->config.noise_m;
     uint16_t count = 0;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes && cost <= enough; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w == 0 || !(pose->weight > 0.0f))
@@ -307,10 +307,11 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
         float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
                          0.5f * noise2 * lever2 / (pose->inertia + LEAST_INERTIA);
         float d2 = grrl_vec2_dot(r, r) / variance;
-        cost += d2 < cap ? d2 : cap;
+        cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
         count++;
     }
-    *n = count;
+    if (cost <= enough)
+        *n = count;
     return cost;
 }
 

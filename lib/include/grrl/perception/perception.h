@@ -200,6 +200,7 @@ struct grrl_perception {
     /* private: bodies */
     uint8_t n_bodies;
     uint16_t n_numbers;
+    bool is_assigned; /* no body has changed since every feature was last found where it belongs */
     uint16_t number[GRRL_MAX_LINKS];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
     struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];
