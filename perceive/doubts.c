@@ -130,6 +130,21 @@ void grrl_doubt_unit(const struct grrl_tracks *tracks, const struct grrl_report 
                   extent);
 }
 
+/* --- the camera ------------------------------------------------------------------------------- */
+
+void grrl_doubt_camera(const struct grrl_camera *camera, struct grrl_warnings *warnings)
+{
+    if (camera->zoomed)
+        grrl_warn(warnings, "the whole picture grows or shrinks by %.0f%%: undone, as a zoom",
+                  100.0 * (double)camera->zoom);
+    if (camera->tilted)
+        grrl_warn(
+            warnings,
+            "the camera looks at the plane from %.0f degrees aside: undone; lengths are those "
+            "at the centre of the picture",
+            (double)camera->tilt_rad * 180.0 / (double)GRRL_PI);
+}
+
 /* --- what was left out ------------------------------------------------------------------------ */
 
 void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *warnings)

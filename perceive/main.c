@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "camera.h"
 #include "doubts.h"
 #include "handle.h"
 #include "motion.h"
@@ -30,6 +31,7 @@ enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 3
 static const float pixel_m = 0.001f;
 
 static struct grrl_perception perception;
+static struct grrl_camera view;
 
 struct unit {
     const char *name;
@@ -247,6 +249,7 @@ static int report_model(const struct grrl_perceive_options *options,
 {
     static char term[TERM_BYTES];
     static struct grrl_warnings warnings;
+    static struct grrl_model picture;
     const struct grrl_model *model = grrl_perception_model(&perception);
     enum grrl_status status = print_term(model, LARGE_M, term, sizeof term);
     if (status != GRRL_OK)
@@ -269,12 +272,15 @@ static int report_model(const struct grrl_perceive_options *options,
                                  .y_down = strcmp(unit.name, "px") == 0};
     bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
     grrl_doubt_input(tracks, &warnings);
+    grrl_doubt_camera(&view, &warnings);
     grrl_doubt_unit(tracks, &report, said, &warnings);
     grrl_doubt_losses(&report, &warnings);
     grrl_warnings_print(stderr, &warnings);
-    if (options->svg != NULL && !write_svg(options->svg, &report))
-        return EXIT_INPUT;
     if (options->motion != NULL && !write_motion(options->motion, &report))
+        return EXIT_INPUT;
+    grrl_camera_to_picture(&view, model, &picture);
+    report.model = &picture;
+    if (options->svg != NULL && !write_svg(options->svg, &report))
         return EXIT_INPUT;
     (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
@@ -366,6 +372,7 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
         if (options->noise_from_points && !measure_noise(&tracks, &config.noise_m))
             result = EXIT_INPUT;
         else if (!grrl_tracks_join_renewed(&tracks, config.noise_m) ||
+                 (!config.static_background && !grrl_camera_undo(&tracks, config.noise_m, &view)) ||
                  !grrl_pace_configure(&tracks, &config))
             result = fail("out of memory");
         else
