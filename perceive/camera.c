@@ -41,7 +41,7 @@ enum { POLISHES = 6 };
 /* The search: where it begins, in natural units, and ends. */
 #define FIRST_STEP 0.1
 #define LAST_STEP 0.002
-enum { PARAMETERS = 4, DIRECTIONS = 8, STARTS = 4 };
+enum { PARAMETERS = 4, DIRECTIONS = 8, STARTS = 2 };
 
 static int by_size(const void *left, const void *right)
 {
@@ -338,9 +338,12 @@ static double best_guess(const struct search *search, struct guess *best)
 {
     struct guess start[STARTS];
     double least = HUGE_VAL;
+    grrl_camera_pairs_choose(search->pairs, search->pairs->at, (float)search->noise, false);
+    measure_lengths(search);
     first_guesses(search, start);
     for (int k = 0; k < STARTS; k++) {
-        (void)choose_by(search, &(struct guess){{0.0}});
+        grrl_camera_pairs_choose(search->pairs, search->pairs->at, (float)search->noise, false);
+        measure_lengths(search);
         struct guess guess = search_guess(search, start[k]);
         (void)choose_by(search, &guess);
         guess = search_guess(search, guess);
