@@ -286,16 +286,6 @@ static int report_model(const struct grrl_perceive_options *options,
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
-/* Whether the size of a body changes by so much that rigid bodies do not hold. */
-static bool sizes_change(void)
-{
-    const struct grrl_model *model = grrl_perception_model(&perception);
-    for (uint8_t b = 0; b < model->n_bodies; b++)
-        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
-            return true;
-    return false;
-}
-
 static unsigned unassigned(const struct grrl_model *model)
 {
     unsigned n = 0;
@@ -304,9 +294,31 @@ static unsigned unassigned(const struct grrl_model *model)
     return n;
 }
 
+/* Whether the size of a body changes by so much that rigid bodies do not hold, or as many points
+ * as make a body are in none. */
+static bool sizes_change(void)
+{
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    for (uint8_t b = 0; b < model->n_bodies; b++)
+        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
+            return true;
+    return unassigned(model) >= perception.config.min_features;
+}
+
+/* Whether bodies that grow tell more than rigid ones: fewer for the points, or more that have
+ * enough points each. */
+static bool tells_more(const struct grrl_model *growing, const struct grrl_model *rigid,
+                       unsigned min_features)
+{
+    int more_bodies = (int)growing->n_bodies - (int)rigid->n_bodies;
+    int more_points = (int)unassigned(rigid) - (int)unassigned(growing);
+    return more_bodies < 0 ? more_points >= 0
+                           : more_points > 0 && more_points >= 2 * (int)min_features * more_bodies;
+}
+
 /*
  * Before a camera that zooms, or that something nears, a rigid body falls into slices. Once more
- * with bodies that may grow; that holds if it explains no fewer points with fewer bodies.
+ * with bodies that may grow.
  */
 static enum grrl_status observe_growing(const struct grrl_perception_config *config,
                                         const struct grrl_tracks *tracks)
@@ -319,9 +331,8 @@ static enum grrl_status observe_growing(const struct grrl_perception_config *con
     growing.sizes_change = true;
     enum grrl_status status = grrl_perception_init(&perception, &growing);
     status = status == GRRL_OK ? observe(tracks) : status;
-    if (status != GRRL_OK ||
-        grrl_perception_model(&perception)->n_bodies >= grrl_perception_model(&rigid)->n_bodies ||
-        unassigned(grrl_perception_model(&perception)) > unassigned(grrl_perception_model(&rigid)))
+    if (status != GRRL_OK || !tells_more(grrl_perception_model(&perception),
+                                         grrl_perception_model(&rigid), config->min_features))
         perception = rigid;
     return GRRL_OK;
 }

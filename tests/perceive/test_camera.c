@@ -23,6 +23,7 @@ struct plan {
     float grows;  /* the link alone */
     float tilt;   /* of the table, about an axis at 30 degrees */
     float radius; /* of the link's path */
+    float turn;   /* of the link */
 };
 
 static const float noise_m = 0.0005f;
@@ -44,8 +45,8 @@ static struct grrl_vec2 place(struct plan plan, unsigned i, float t)
 {
     if (i >= LINK)
         return (struct grrl_vec2){0.17f * ((float)(i % 6) - 2.5f), 0.16f * ((float)(i % 5) - 2.0f)};
-    float c = cosf(1.6f * t) * (1.0f + plan.grows * t);
-    float s = sinf(1.6f * t) * (1.0f + plan.grows * t);
+    float c = cosf(plan.turn * t) * (1.0f + plan.grows * t);
+    float s = sinf(plan.turn * t) * (1.0f + plan.grows * t);
     float x = 0.045f * ((float)(i % 8) - 3.5f);
     float y = i < 8 ? -0.05f : 0.05f;
     return (struct grrl_vec2){c * x - s * y + plan.radius * t - 0.1f,
@@ -117,7 +118,7 @@ static void a_zoom_is_undone(void **state)
         float after;
         float zoom = i == 0 ? 0.3f : -0.2f;
         struct grrl_camera camera =
-            undone((struct plan){.zoom = zoom, .radius = 0.2f}, &before, &after);
+            undone((struct plan){.zoom = zoom, .radius = 0.2f, .turn = 1.6f}, &before, &after);
         assert_true(camera.zoomed);
         assert_false(camera.tilted);
         float expected = zoom > 0.0f ? zoom : 1.0f / (1.0f + zoom) - 1.0f;
@@ -135,7 +136,7 @@ static void a_tilted_table_is_seen_from_above(void **state)
         float before;
         float after;
         struct grrl_camera camera =
-            undone((struct plan){.tilt = tilts[i], .radius = 0.3f}, &before, &after);
+            undone((struct plan){.tilt = tilts[i], .radius = 0.3f, .turn = 1.6f}, &before, &after);
         assert_true(camera.tilted);
         assert_false(camera.zoomed);
         assert_true(fabsf(camera.tilt_rad - fabsf(tilts[i])) < 0.08f);
@@ -148,7 +149,8 @@ static void a_tilted_table_is_seen_from_above(void **state)
 static void nothing_else_is_undone(void **state)
 {
     (void)state;
-    const struct plan plans[] = {{.radius = 0.2f}, {.radius = 0.0f}, {.grows = 0.25f}};
+    const struct plan plans[] = {
+        {.radius = 0.2f, .turn = 1.6f}, {.turn = 1.6f}, {.grows = 0.25f, .turn = 0.3f}};
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
         struct grrl_camera camera;
         struct grrl_tracks tracks = make(plans[i]);
@@ -169,7 +171,7 @@ static void the_answer_is_in_the_picture(void **state)
     struct grrl_camera camera;
     static struct grrl_model above;
     static struct grrl_model picture;
-    struct plan plan = {.tilt = 0.52f, .radius = 0.3f};
+    struct plan plan = {.tilt = 0.52f, .radius = 0.3f, .turn = 1.6f};
     struct grrl_tracks tracks = make(plan);
     struct grrl_tracks original = make(plan);
     assert_true(grrl_camera_undo(&tracks, 2.0f * noise_m, &camera));

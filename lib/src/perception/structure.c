@@ -373,7 +373,7 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     }
     if (is_joined(model, first, second))
         pair->relation = GRRL_RELATION_JOINED;
-    else if (pair->p_disconnected >= SURE_DISCONNECTED)
+    else if (pair->p_disconnected >= SURE_DISCONNECTED && e.doubt != GRRL_REASON_UNPROVEN)
         pair->relation = GRRL_RELATION_DISCONNECTED;
     else
         pair->reason = e.doubt == GRRL_REASON_NONE ? GRRL_REASON_STRUCTURE : e.doubt;
