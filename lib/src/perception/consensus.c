@@ -30,6 +30,10 @@
  * in 77 features, over 6 once in 20. Those lost are reassigned afterwards. */
 #define INLIER_COST 3.5f
 
+/* A group that is lost early saw nothing move apart, so that all follow it: it must be seen in one
+ * of so many keyframes. */
+#define TOLD_SHARE 2
+
 #define GROW_ROUNDS 3 /* a group grows along a link, and settles */
 #define SEEN 100u     /* outweighs the frames averaged, 60 at most */
 
@@ -239,11 +243,13 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
 {
     float cost[GRRL_MAX_FEATURES] = {0.0f};
     float count[GRRL_MAX_FEATURES] = {0.0f};
+    unsigned told = 0; /* keyframes */
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
         if (k == k0 || !displacement_of(p, group, n_group, k0, k, &d))
             continue;
+        told++;
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w0 = p->keyframe[k0].weight[slots[i]];
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
@@ -261,7 +267,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
         }
     }
     uint16_t n_members = 0;
-    for (uint16_t i = 0; i < n; i++)
+    for (uint16_t i = 0; i < n && TOLD_SHARE * told >= chosen->n; i++)
         if (count[i] > 0.0f && cost[i] <= INLIER_COST * count[i])
             members[n_members++] = slots[i];
     return n_members;
