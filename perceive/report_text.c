@@ -103,10 +103,10 @@ struct grrl_reason_text grrl_report_reason(const struct grrl_report *report,
     static const char *const words[] = {
         [GRRL_REASON_NONE] = "",
         [GRRL_REASON_NO_TYPE] = "neither type explains the motion, or both do",
-        [GRRL_REASON_UNPROVEN] = "motion of their own explains it as well",
-        [GRRL_REASON_FAR] = "too far from the joint that the motion suggests",
-        [GRRL_REASON_SIZES] = "sizes change against one another",
-        [GRRL_REASON_STRUCTURE] = "other joints leave no place for this one",
+        [GRRL_REASON_UNPROVEN] = "independent motion explains it as well",
+        [GRRL_REASON_FAR] = "too far from the joint the motion suggests",
+        [GRRL_REASON_SIZES] = "their relative size changes",
+        [GRRL_REASON_STRUCTURE] = "other joints leave no room for this one",
     };
     struct grrl_reason_text reason = {""};
     if (pair->reason == GRRL_REASON_LITTLE)
@@ -114,8 +114,8 @@ struct grrl_reason_text grrl_report_reason(const struct grrl_report *report,
     bool slid = pair->p_prismatic > pair->p_revolute;
     const char *text = pair->reason >= sizeof words / sizeof words[0] ? "" : words[pair->reason];
     if (pair->reason == GRRL_REASON_UNPROVEN && slid)
-        text = "slid once, which motion of their own explains as well; sliding back, or turning "
-               "both, would tell";
+        text = "slid once, which independent motion explains as well; sliding back or turning "
+               "together would tell";
     (void)snprintf(reason.text, sizeof reason.text, "%s", text);
     return reason;
 }
