@@ -88,12 +88,12 @@ static struct grrl_reason_text too_little(const struct grrl_report *report,
     const double degree = 180.0 / (double)GRRL_PI;
     bool noisy = pair->turned_rad > config->min_turn_rad || pair->slid_m > config->min_slide_m;
     struct grrl_reason_text reason;
-    (void)snprintf(
-        reason.text, sizeof reason.text,
-        "moved apart %s: turned %.2g of the %.2g degrees, slid %.2g of the %.2g %s needed",
-        noisy ? "no more than noise" : "too little", (double)pair->turned_rad * degree,
-        (double)config->min_turn_rad * degree, (double)pair->slid_m * report->per_metre,
-        (double)config->min_slide_m * report->per_metre, report->unit);
+    (void)snprintf(reason.text, sizeof reason.text,
+                   "%s: turned %.2g of the %.2g degrees, slid %.2g of the %.2g %s needed",
+                   noisy ? "no more relative motion than noise" : "too little relative motion",
+                   (double)pair->turned_rad * degree, (double)config->min_turn_rad * degree,
+                   (double)pair->slid_m * report->per_metre,
+                   (double)config->min_slide_m * report->per_metre, report->unit);
     return reason;
 }
 
