@@ -261,19 +261,22 @@ static int slow_find(bool *largest)
         if (scene.keyframe[k0].weight[slots[s]] == 0)
             continue;
         slow_seed(slots[s], k0, group);
+        int before = size_of(group);
         for (int round = 0; round < 3 && size_of(group) >= 3; round++) {
+            before = size_of(group);
             for (int i = 0; i < n_slots; i++) {
                 double cost = slow_cost(group, slots[i], k0);
                 grown[slots[i]] = cost >= 0.0 && cost <= 3.5 && is_told(group, k0);
             }
             memcpy(group, grown, sizeof group);
         }
-        if (size_of(group) > best) {
-            best = size_of(group);
+        int stable = size_of(group) < before ? size_of(group) : before;
+        if (stable > best) {
+            best = stable;
             memcpy(largest, group, sizeof group);
         }
     }
-    return best;
+    return size_of(largest);
 }
 
 /* Whether both found the same. A residual at the limit may fall to either side. */

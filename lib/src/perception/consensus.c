@@ -311,6 +311,7 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
     struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
     uint16_t best = 0;
+    uint16_t n_members = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
         uint16_t group[GRRL_MAX_FEATURES];
@@ -318,15 +319,19 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
         if (p->keyframe[k0].weight[slots[i]] == 0)
             continue;
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
+        uint16_t n_before = n_group;
         for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
-            uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
-            memcpy(group, grown, n_grown * sizeof group[0]);
-            n_group = n_grown;
+            n_before = n_group;
+            n_group = followers(p, slots, n, group, n_group, k0, &chosen, grown);
+            memcpy(group, grown, n_group * sizeof group[0]);
         }
-        if (n_group > best) {
-            best = n_group;
+        /* a group that swells in the last round saw little, and has not yet met what it gained */
+        uint16_t stable = n_group < n_before ? n_group : n_before;
+        if (stable > best) {
+            best = stable;
+            n_members = n_group;
             memcpy(members, group, n_group * sizeof group[0]);
         }
     }
-    return best;
+    return n_members;
 }
