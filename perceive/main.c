@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "camera.h"
 #include "doubts.h"
 #include "handle.h"
 #include "motion.h"
@@ -31,6 +32,7 @@ enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 3
 static const float pixel_m = 0.001f;
 
 static struct grrl_perception perception;
+static struct grrl_camera view;
 
 struct unit {
     const char *name;
@@ -248,6 +250,7 @@ static int report_model(const struct grrl_perceive_options *options,
 {
     static char term[TERM_BYTES];
     static struct grrl_warnings warnings;
+    static struct grrl_model picture;
     const struct grrl_model *model = grrl_perception_model(&perception);
     enum grrl_status status = print_term(model, LARGE_M, term, sizeof term);
     if (status != GRRL_OK)
@@ -270,25 +273,18 @@ static int report_model(const struct grrl_perceive_options *options,
                                  .y_down = strcmp(unit.name, "px") == 0};
     bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
     grrl_doubt_input(tracks, &warnings);
+    grrl_doubt_camera(&view, &warnings);
     grrl_doubt_unit(tracks, &report, said, &warnings);
     grrl_doubt_losses(&report, &warnings);
     grrl_warnings_print(stderr, &warnings);
-    if (options->svg != NULL && !write_svg(options->svg, &report))
-        return EXIT_INPUT;
     if (options->motion != NULL && !write_motion(options->motion, &report))
+        return EXIT_INPUT;
+    grrl_camera_to_picture(&view, model, &picture);
+    report.model = &picture;
+    if (options->svg != NULL && !write_svg(options->svg, &report))
         return EXIT_INPUT;
     (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
-}
-
-/* Whether the size of a body changes too much for the rigid model. */
-static bool sizes_change(void)
-{
-    const struct grrl_model *model = grrl_perception_model(&perception);
-    for (uint8_t b = 0; b < model->n_bodies; b++)
-        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
-            return true;
-    return false;
 }
 
 static unsigned unassigned(const struct grrl_model *model)
@@ -299,9 +295,31 @@ static unsigned unassigned(const struct grrl_model *model)
     return n;
 }
 
+/* Whether the size of a body changes by so much that rigid bodies do not hold, or as many points
+ * as make a body are in none. */
+static bool sizes_change(void)
+{
+    const struct grrl_model *model = grrl_perception_model(&perception);
+    for (uint8_t b = 0; b < model->n_bodies; b++)
+        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
+            return true;
+    return unassigned(model) >= perception.config.min_features;
+}
+
+/* Whether bodies that grow tell more than rigid ones: fewer for the points, or more that have
+ * enough points each. */
+static bool tells_more(const struct grrl_model *growing, const struct grrl_model *rigid,
+                       unsigned min_features)
+{
+    int more_bodies = (int)growing->n_bodies - (int)rigid->n_bodies;
+    int more_points = (int)unassigned(rigid) - (int)unassigned(growing);
+    return more_bodies < 0 ? more_points >= 0
+                           : more_points > 0 && more_points >= 2 * (int)min_features * more_bodies;
+}
+
 /*
- * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
- * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
+ * If the camera zooms or something approaches it, a rigid body falls into slices, or points into
+ * none. Tries again with bodies that may grow.
  */
 static enum grrl_status observe_growing(const struct grrl_perception_config *config,
                                         const struct grrl_tracks *tracks)
@@ -314,9 +332,8 @@ static enum grrl_status observe_growing(const struct grrl_perception_config *con
     growing.sizes_change = true;
     enum grrl_status status = grrl_perception_init(&perception, &growing);
     status = status == GRRL_OK ? observe(tracks) : status;
-    if (status != GRRL_OK ||
-        grrl_perception_model(&perception)->n_bodies >= grrl_perception_model(&rigid)->n_bodies ||
-        unassigned(grrl_perception_model(&perception)) > unassigned(grrl_perception_model(&rigid)))
+    if (status != GRRL_OK || !tells_more(grrl_perception_model(&perception),
+                                         grrl_perception_model(&rigid), config->min_features))
         perception = rigid;
     return GRRL_OK;
 }
@@ -367,6 +384,7 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
         if (options->noise_from_points && !measure_noise(&tracks, &config.noise_m))
             result = EXIT_INPUT;
         else if (!grrl_tracks_join_renewed(&tracks, config.noise_m) ||
+                 (!config.static_background && !grrl_camera_undo(&tracks, config.noise_m, &view)) ||
                  !grrl_pace_configure(&tracks, &config))
             result = fail("out of memory");
         else

@@ -24,7 +24,8 @@ void add(const Outcome &outcome, Kind kind, Figures &f)
     f.ms += outcome.ms;
     f.missed += {score.missed, score.joints};
     if (kind == Kind::MECHANISM) {
-        f.right += {score.right, 1};
+        if (score.joints > 0) /* else there was nothing to be told */
+            f.right += {score.right, 1};
         f.mechanism_false += {false_called, 1};
     } else if (kind == Kind::INDEPENDENT) {
         f.independent_called += {false_called, 1};

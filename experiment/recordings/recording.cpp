@@ -18,6 +18,7 @@ using grrl_sim::Vec2;
 namespace
 {
 
+constexpr int least_points = 4; /* of a body that can be told */
 constexpr double duration_s = 4.0;
 constexpr double missing = 0.03;       /* of all points in a frame */
 constexpr double sliding_share = 0.25; /* of a link's points, along edges */
@@ -118,6 +119,16 @@ void spoil(Tracks tracks, const Scene &scene, std::vector<Feature> &features, Ra
     }
 }
 
+/* Whether no motion could tell a joint. In a picture something that slides on the ground without a
+ * turn may as well go straight on its own, as `crossing` does; only the way back tells. On a table
+ * what lies side by side is joined. And a link with fewer points than a body needs is none. */
+bool is_open(const Joint &joint, const Conditions &conditions)
+{
+    bool slides_once = joint.type == GRRL_PRISMATIC && joint.ramps.size() == 1;
+    return conditions.points < least_points ||
+           (conditions.size.unit == Unit::PX && joint.a == 0 && slides_once);
+}
+
 double standard_noise(const Conditions &conditions)
 {
     const Size &size = conditions.size;
@@ -139,6 +150,8 @@ public:
         recording_.unit = conditions.size.unit;
         recording_.bodies = static_cast<int>(scene.bodies.size());
         recording_.joints = scene.joints;
+        for (const Joint &joint : scene.joints)
+            recording_.open.push_back(is_open(joint, conditions));
         recording_.noise = standard_noise(conditions);
     }
 

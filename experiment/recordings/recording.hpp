@@ -55,6 +55,7 @@ struct Recording {
     std::vector<TrackTruth> tracks; /* by id */
     int bodies = 0;                 /* with the ground, body 0 */
     std::vector<Joint> joints;
+    std::vector<bool> open;         /* of the joints: no motion tells them from none */
     double noise = 0.0; /* standard deviation of a point, in the unit */
 };
 

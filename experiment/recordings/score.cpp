@@ -103,21 +103,27 @@ Score score(const Recording &recording, const Estimate &estimate)
     score.bodies = estimate.links;
     score.bodies_right = table.right(recording.unit != Unit::PX);
     score.error = table.error();
-    score.joints = static_cast<int>(recording.joints.size());
+    score.joints =
+        static_cast<int>(std::count(recording.open.begin(), recording.open.end(), false));
     std::vector<EstimatedJoint> joints = estimate.joints;
     std::stable_sort(joints.begin(), joints.end(),
                      [](const auto &a, const auto &b) { return a.probability > b.probability; });
-    std::vector<bool> known(recording.joints.size(), false);
+    std::vector<bool> known = recording.open; /* nobody misses those */
     for (const EstimatedJoint &joint : joints) {
         int a = table.true_body(static_cast<size_t>(joint.a));
         int b = table.true_body(static_cast<size_t>(joint.b));
         bool right = false;
+        bool open = false;
         for (size_t i = 0; i < known.size() && !right; i++) {
             const Joint &truth = recording.joints[i];
-            right = !known[i] && truth.a == std::min(a, b) && truth.b == std::max(a, b) &&
-                    static_cast<int>(truth.type) == joint.type;
+            bool is_it = truth.a == std::min(a, b) && truth.b == std::max(a, b) &&
+                         static_cast<int>(truth.type) == joint.type;
+            open = open || (is_it && recording.open[i]);
+            right = is_it && !known[i];
             known[i] = known[i] || (right && joint.probability >= called_probability);
         }
+        if (open)
+            continue; /* a guess, and it happens to be so */
         score.called.push_back({joint.probability, right});
         score.false_called += !right && joint.probability >= called_probability;
         score.false_sure += !right && joint.probability >= sure_probability;

@@ -30,7 +30,7 @@ struct Score {
     bool bodies_right = false; /* each in one body, of little else, and none too many */
     double error = 0.0;        /* share of the tracks in some body that are in a wrong one */
     int bodies = 0;            /* in the answer */
-    int joints = 0;            /* in truth */
+    int joints = 0;            /* in truth, but for open ones */
     int missed = 0;            /* of them, not called */
     int false_called = 0;
     int false_sure = 0;
