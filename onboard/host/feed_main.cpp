@@ -182,7 +182,7 @@ int main(int argc, char **argv)
     grrl_options_result parsed = grrl_options_parse(&program, nullptr, 0, argc, argv, &first);
     if (parsed != GRRL_OPTIONS_RUN)
         return parsed;
-    if (argc - first != program.most_arguments)
+    if (argc - first != program.max_arguments)
         return grrl_options_wrong(&program, program.arguments);
     char **arguments = argv + first;
     uint64_t trials = 0;
