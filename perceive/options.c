@@ -22,7 +22,7 @@ static const struct grrl_program program = {
         "A handle file has rows x y, x y z, or x y z and a quaternion, in metres unless "
         "--unit says\notherwise.\n\n"
         "Exit status: 0 fine; 1 the input is wrong or cannot be read; 2 wrong command line.\n",
-    .most_arguments = 1,
+    .max_arguments = 1,
     .arguments = "one file of tracks only",
 };
 
