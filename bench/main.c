@@ -14,7 +14,7 @@ static const struct grrl_program program = {
              "retrieve  nanoseconds per query among 1000 and 100000 stored states\n"
              "evict     the share of updates whose experience a full store still has\n"
              "perceive  milliseconds of perception by links, features and keyframes\n",
-    .most_arguments = 1,
+    .max_arguments = 1,
     .arguments = "give only one measurement",
 };
 
