@@ -332,7 +332,7 @@ void Node::send_frame()
     publish_frame();
 }
 
-/* What would have stood with the points stands with the picture. */
+/* The image carries the fields that its points would have. */
 void Node::take_picture()
 {
     const grrl_points_t &points = points_.message;
