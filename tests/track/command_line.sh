@@ -43,7 +43,7 @@ cp text.avi folder/1.png
 refuses 1 "not a readable image" folder
 refuses 1 "not a calibration" --calibration text.avi "$SOURCE/examples/arm.mp4"
 refuses 1 "no checkerboard with 9 x 6" --calibrate 9x6x25 --calibration c "$SOURCE/examples/arm.mp4"
-refuses 1 "no video can be written there" --draw none/x.avi "$SOURCE/examples/arm.mp4"
+refuses 1 "cannot write a video there" --draw none/x.avi "$SOURCE/examples/arm.mp4"
 
 # Tracks of a film of ours, drawn: the film is as long as it was, and the points are those again.
 "$VIDEO" RR 1 1 film.avi >/dev/null || fail "track_video"
