@@ -141,7 +141,6 @@ struct grrl_agent {
     int64_t plant_session_id; /* 0: none yet */
     int64_t plant_heard_us;   /* observing: by the clock of the messages */
     int64_t heard_us;
-    bool lock_step;
     enum grrl_agent_end end;
     grrl_stop_t stop; /* as received; session_id 0: none, or malformed */
     bool rival_seen;  /* already reported */
@@ -153,6 +152,7 @@ struct grrl_agent {
     int32_t trial_id; /* of the learner's trial */
     int32_t cmd_seq;  /* the last push commanded (observing: seen) */
     int64_t seq;      /* the newest frame accepted */
+    bool begun;       /* a frame of this trial has been accepted */
     bool adopted;     /* the learner knows push cmd_seq */
     int rest_frames;  /* since the last motion, for senders that do not report the phase */
     int32_t rest_ack;

@@ -18,6 +18,7 @@ static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
     agent->trial_id = trial_id;
     agent->cmd_seq = 0;
     agent->adopted = false;
+    agent->begun = false;
     agent->rest_frames = 0;
     agent->rest_ack = 0;
     agent->in_vain = 0;
@@ -317,6 +318,24 @@ static void watch(struct grrl_agent *agent, grrl_points_t *points)
         settled(agent);
 }
 
+/* In lock-step a lost frame is sent again, with those behind it: none is taken before. The first of
+ * a trial comes alone. */
+static bool is_early(const struct grrl_agent *agent, const grrl_points_t *points)
+{
+    if (points->mode == GRRL_POINTS_T_REAL_TIME || agent->config.observe)
+        return false;
+    return agent->begun ? points->seq > agent->seq + 1 : points->mode == GRRL_POINTS_T_MORE;
+}
+
+/* Takes in a new frame, or not. */
+static void take_new(struct grrl_agent *agent, grrl_points_t *points)
+{
+    agent->counts.lost += agent->seq > 0 ? points->seq - agent->seq - 1 : 0;
+    agent->seq = points->seq;
+    agent->begun = true;
+    watch(agent, points);
+}
+
 void agent_take_frame(struct grrl_agent *agent, grrl_points_t *points)
 {
     bool over = agent->end != GRRL_AGENT_GOES_ON && agent->end != GRRL_AGENT_TRIALS_DONE;
@@ -328,21 +347,22 @@ void agent_take_frame(struct grrl_agent *agent, grrl_points_t *points)
     agent_watch_frame(agent, points, ours);
     if (!ours)
         return; /* the message about this trial has not arrived yet; it is repeated */
-    agent->lock_step = points->mode == GRRL_POINTS_T_LOCK_STEP;
+    if (is_early(agent, points))
+        return;
     int before = agent->phase;
     if (points->seq <= agent->seq) {
         agent->counts.repeated++;
         if (points->seq < agent->seq)
             return;
     } else {
-        agent->counts.lost += agent->seq > 0 ? points->seq - agent->seq - 1 : 0;
-        agent->seq = points->seq;
-        watch(agent, points);
+        take_new(agent, points);
     }
+    if (points->mode == GRRL_POINTS_T_MORE)
+        return;
     bool waits = agent->phase == PHASE_JUDGING || agent->phase == PHASE_COMMANDED;
     bool due = waits && agent_now_us(agent) - agent->answered_us >= RESEND_US;
     if (before == PHASE_COMMANDED && agent->phase == PHASE_COMMANDED && due)
         agent_watch_resend(agent);
-    if (agent->lock_step || agent->phase != before || due)
+    if (points->mode == GRRL_POINTS_T_LOCK_STEP || agent->phase != before || due)
         agent_answer(agent);
 }

@@ -96,6 +96,14 @@ struct grrl_option grrl_option_call(const char *name, const char *argument, cons
                                 .take = take};
 }
 
+struct grrl_option grrl_option_each(const char *name, const char *argument, const char *help,
+                                    grrl_option_take take, void *context)
+{
+    struct grrl_option option = grrl_option_call(name, argument, help, take, context);
+    option.kind = GRRL_OPTION_EACH;
+    return option;
+}
+
 /* --- values ----------------------------------------------------------------------------------- */
 
 bool grrl_option_integer_of(const char *text, uint64_t low, uint64_t high, uint64_t *value)
@@ -164,6 +172,7 @@ static const char *take(const struct grrl_option *option, const char *text, char
     case GRRL_OPTION_NUMBER:
         return take_number(option, text, right);
     case GRRL_OPTION_CALL:
+    case GRRL_OPTION_EACH:
         return option->take(option->target, text);
     default:
         return take_integer(option, text, right);
@@ -272,7 +281,7 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
         enum grrl_options_result result = take_option(program, &options[i], optarg, given[i]);
         if (result != GRRL_OPTIONS_RUN)
             return result;
-        given[i] = true;
+        given[i] = options[i].kind != GRRL_OPTION_EACH;
     }
     if (argc - optind > program->max_arguments) {
         (void)fprintf(stderr, "%s: %s: %s\n", program->name, argv[optind + program->max_arguments],

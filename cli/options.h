@@ -46,7 +46,8 @@ enum grrl_option_kind {
     GRRL_OPTION_U32,
     GRRL_OPTION_U64,
     GRRL_OPTION_NUMBER,
-    GRRL_OPTION_CALL
+    GRRL_OPTION_CALL,
+    GRRL_OPTION_EACH
 };
 
 /* A row, filled in by the functions below. Strings and target must outlive grrl_options_parse. */
@@ -79,6 +80,9 @@ struct grrl_option grrl_option_number(const char *name, const char *argument, co
                                       double low, double high, double scale, double *target);
 /* An option handled by a callback; argument NULL: a flag. */
 struct grrl_option grrl_option_call(const char *name, const char *argument, const char *help,
+                                    grrl_option_take take, void *context);
+/* The same for an option that may be given several times. */
+struct grrl_option grrl_option_each(const char *name, const char *argument, const char *help,
                                     grrl_option_take take, void *context);
 
 /* Parse the whole text as a whole number from low to high, or as a number that fits a float. False

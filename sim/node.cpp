@@ -12,7 +12,8 @@ namespace
 {
 
 constexpr int64_t silence_us = 1000000;
-constexpr int max_retries = 10; /* at a scene in which the agent finds nothing to push */
+constexpr size_t most_in_burst = 16; /* fit the receive buffer of any socket */
+constexpr int max_retries = 10;      /* at a scene in which the agent finds nothing to push */
 
 int8_t reason_on_the_wire(PushReason reason)
 {
@@ -156,9 +157,14 @@ void Node::begin_trial()
     rest_frames_ = 0;
     retries_ = 0;
     ack_cmd_seq_ = 0;
+    trial_seq_ = seq_;
     command_ = {};
     decision_ = {};
     status_ = {};
+    if (config_.next_object) {
+        config_.object = config_.next_object(trial_id_);
+        supervisor_ = Supervisor(visible_structure(config_.object));
+    }
     world_ =
         std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
     if (config_.camera != nullptr)
@@ -290,11 +296,21 @@ void Node::set_push_state(int8_t state, int8_t reason)
     publish_push_status();
 }
 
-/* In lock-step the next frame is due once the last one was answered. */
+/* In lock-step the next frames are due once the last one was answered. */
 void Node::advance()
 {
     if (!config_.real_time && frames_flow())
-        send_frame();
+        send_burst();
+}
+
+/* What moves does not depend on the agent until it has settled: frames go out together, and only
+ * the last one asks for an answer. The first of a trial goes alone, so that the agent knows where
+ * the trial begins; from there it takes frames in order or not at all. */
+void Node::send_burst()
+{
+    burst_.clear();
+    while (send_frame())
+        continue;
 }
 
 /* Advances the world by one frame; returns the phase to report. */
@@ -315,21 +331,29 @@ int8_t Node::advance_world()
     return GRRL_POINTS_T_SETTLED;
 }
 
-void Node::send_frame()
+/* Returns whether the next one follows at once. */
+bool Node::send_frame()
 {
     grrl_points_t &points = points_.message;
     points.phase = advance_world();
-    points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME : GRRL_POINTS_T_LOCK_STEP;
+    bool more = !config_.real_time && config_.camera == nullptr && seq_ > trial_seq_ &&
+                phase_ != Phase::DECIDING && burst_.size() + 1 < most_in_burst;
+    points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME
+                  : more            ? GRRL_POINTS_T_MORE
+                                    : GRRL_POINTS_T_LOCK_STEP;
     points.session_id = config_.session_id;
     points.seq = ++seq_;
     points.trial_id = trial_id_;
     points.ack_cmd_seq = ack_cmd_seq_;
     points.agent_session_id = agent_session_id_;
-    if (config_.camera != nullptr)
-        return take_picture();
+    if (config_.camera != nullptr) {
+        take_picture();
+        return false;
+    }
     world_->observe(frame_);
     points.n_points = copy_points(frame_, GRRL_WIRE_MAX_POINTS, points.id, points.x, points.y);
     publish_frame();
+    return more;
 }
 
 /* The image carries the fields that its points would have. */

@@ -34,6 +34,7 @@ struct TrialResult {
 
 struct NodeConfig {
     ObjectSpec object;
+    std::function<ObjectSpec(int32_t trial_id)> next_object; /* in its place, for each trial */
     WorldParams world;
     uint64_t seed = 1;
     int trials = 1; /* number of trials, not counting aborted ones */
@@ -110,7 +111,8 @@ private:
     void advance();
     void repeat_settling();
     int8_t advance_world();
-    void send_frame();
+    bool send_frame();
+    void send_burst();
     void take_picture();
     void set_push_state(int8_t state, int8_t reason);
 
@@ -119,6 +121,7 @@ private:
     void publish_frame();
     void publish_picture();
     void publish_points();
+    void repeat_burst();
     void publish_push_status();
     void tick_lock_step(int64_t now);
     void tick_real_time(int64_t now);
@@ -139,6 +142,8 @@ private:
     int retries_ = 0; /* further frames since the last push */
     int32_t ack_cmd_seq_ = 0;
     int64_t seq_ = 0;
+    int64_t trial_seq_ = 0;                   /* the frame before the trial's first */
+    std::vector<std::vector<uint8_t>> burst_; /* lock-step: frames sent since the last answer */
 
     grrl_trial_t trial_{};
     grrl_wire_points points_{};

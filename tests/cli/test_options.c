@@ -19,6 +19,7 @@ static struct {
     uint64_t seed;
     double noise_m;
     char shape;
+    char letters[8]; /* of --add, in order */
 } values;
 
 static const char *take_shape(void *context, const char *text)
@@ -27,6 +28,13 @@ static const char *take_shape(void *context, const char *text)
         return "one letter";
     *(char *)context = text[0];
     return NULL;
+}
+
+static const char *take_letter(void *context, const char *text)
+{
+    (void)context;
+    (void)strncat(values.letters, text, 1);
+    return strcmp(text, "?") != 0 ? NULL : "a letter";
 }
 
 static struct grrl_program program = {.name = "grrl-test",
@@ -55,6 +63,7 @@ static void parse(const char *line)
         grrl_option_u64("seed", "N", "seed (1)", 0, UINT64_MAX, &values.seed),
         grrl_option_number("noise", "MM", "of a point", 0.0, 100.0, 0.001, &values.noise_m),
         grrl_option_call("shape", "X", "a letter", take_shape, &values.shape),
+        grrl_option_each("add", "X", "a letter", take_letter, &values),
     };
     memset(&values, 0, sizeof values);
     FILE *file = tmpfile();
@@ -144,6 +153,10 @@ static void an_option_is_given_once(void **state)
     refused("--seed 1 --quiet --seed 1", "grrl-test: --seed: given twice\nTry grrl-test --help\n");
     refused("--quiet --quie", "grrl-test: --quiet: given twice\nTry grrl-test --help\n");
     refused("--log a --lo=b", "grrl-test: --log: given twice\nTry grrl-test --help\n");
+    parse("--add a --quiet --add b"); /* but for those that add up */
+    assert_int_equal(result, GRRL_OPTIONS_RUN);
+    assert_string_equal(values.letters, "ab");
+    refused("--add a --add ?", "grrl-test: --add ?: must be a letter\n");
     parse("--quiet"); /* a new command line begins anew */
     assert_int_equal(result, GRRL_OPTIONS_RUN);
 }
@@ -196,6 +209,7 @@ static void help_lists_the_table(void **state)
                                     "  --seed N    seed (1)\n"
                                     "  --noise MM  of a point\n"
                                     "  --shape X   a letter\n"
+                                    "  --add X     a letter\n"
                                     "  --help      print this help\n"
                                     "  --version   print the version\n"
                                     "\n"
