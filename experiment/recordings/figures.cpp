@@ -1,4 +1,4 @@
-/* figures.cpp: what many recordings add up to. */
+/* figures.cpp: the results of many recordings. */
 #include "figures.hpp"
 
 #include <algorithm>
@@ -69,7 +69,7 @@ std::string with_interval(const Share &share)
     return text;
 }
 
-/* The figures that a release is held to, with intervals, and calibration. */
+/* The figures that a release must meet, with intervals, and the calibration. */
 void print_summary(std::FILE *file, const Figures *f)
 {
     const struct {

@@ -1,4 +1,4 @@
-/* score.cpp: bodies by majorities, joints by the bodies they are between. */
+/* score.cpp: matches bodies by majority, and joints by their bodies. */
 #include "score.hpp"
 
 #include <algorithm>
@@ -9,10 +9,11 @@ namespace grrl_experiment::recordings
 namespace
 {
 
-constexpr double max_error = 0.1;      /* of the tracks of a right answer in a wrong body */
+constexpr double max_error = 0.1;      /* of the tracks in a wrong body, for a right answer */
 constexpr double least_assigned = 0.5; /* of the tracks of a moving body */
 
-/* How the tracks of each true body lie in the bodies of the answer; the last column is none. */
+/* Number of tracks of each true body in each body of the answer; the last column counts those in
+ * none. */
 class Table
 {
 public:
@@ -46,7 +47,7 @@ public:
         return best;
     }
 
-    /* The body of the answer that has most of a true one; no_link: none has any. */
+    /* The body of the answer with most tracks of a true one; no_link: none has any. */
     size_t link_of(size_t body) const
     {
         auto end = count_[body].end() - 1;
@@ -67,8 +68,8 @@ public:
         return in_body > 0 ? static_cast<double>(wrong) / in_body : 0.0;
     }
 
-    /* One body of the answer for each that moves, and most of it assigned. The ground may be one
-     * body; in metres several: anything on a table may be an object. */
+    /* Whether each moving body is one body of the answer with most of its tracks. The ground may be
+     * one body; in metres several, since anything on a table may be an object. */
     bool right(bool in_metres) const
     {
         std::vector<int> times(bodies_, 0);

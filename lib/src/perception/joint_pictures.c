@@ -18,8 +18,6 @@
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
-
 /* The body that reveals the camera's own motion: the widest, if it is wide enough to lie behind a
  * and b rather than beside them. GRRL_MAX_LINKS: there is none. */
 static uint8_t background_of(const struct grrl_perception *p, uint8_t a, uint8_t b)
@@ -73,7 +71,7 @@ static float turn_variance(const struct grrl_perception *p, uint8_t k, uint8_t b
     float noise = p->config.noise_m;
     float model = grrl_perception_model_error(p);
     return (noise * noise + 4.0f * model * model + p->bend_m2[body] * pose->weight) /
-           (pose->inertia + LEAST_INERTIA);
+           (pose->inertia + GRRL_LEAST_INERTIA);
 }
 
 /* Position of b along the sliding axis, in the frame of a. */

@@ -25,6 +25,9 @@
  * once in 3,000 points, and an outlier costs no more. */
 #define GRRL_COST_CAP 16.0f
 
+/* m^2, added to inertias to avoid division by zero. */
+#define GRRL_LEAST_INERTIA 1e-9f
+
 static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 {
     struct grrl_vec2 d = grrl_vec2_sub(a, b);
@@ -119,6 +122,9 @@ uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_
 
 /* initial_segmentation.c: the candidate bodies in the first keyframe. */
 void grrl_initial_segmentation(struct grrl_perception *p);
+
+/* Sorts in ascending order, by insertion. */
+void grrl_perception_sort(float *values, uint16_t n);
 
 /* Whether enough features of a body lay densely there by themselves, not linked by those of others.
  */
