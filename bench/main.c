@@ -18,7 +18,7 @@ static const struct grrl_program program = {
              "perceive  milliseconds of perception by links, features and keyframes\n"
              "push      what a push of RPRPRPR costs with learn, in instructions if valgrind is\n"
              "          installed or the processor counts them, and each part next to raw Box2D\n",
-    .most_arguments = 1,
+    .max_arguments = 1,
     .arguments = "give only one measurement",
 };
 

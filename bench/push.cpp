@@ -67,7 +67,8 @@ int perf_counter()
 int run()
 {
     grrl_experiment::Phase phase;
-    phase.object = *grrl_sim::object_from_text("RPRPRPR").value;
+    const grrl_sim::ObjectSpec object = *grrl_sim::object_from_text("RPRPRPR").value;
+    phase.objects = [&object](uint64_t, int32_t) { return object; };
     phase.policy = grrl_experiment::find_policy("learn");
     phase.trials = trials;
     int pushes = 0;

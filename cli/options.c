@@ -96,6 +96,14 @@ struct grrl_option grrl_option_call(const char *name, const char *argument, cons
                                 .take = take};
 }
 
+struct grrl_option grrl_option_each(const char *name, const char *argument, const char *help,
+                                    grrl_option_take take, void *context)
+{
+    struct grrl_option option = grrl_option_call(name, argument, help, take, context);
+    option.kind = GRRL_OPTION_EACH;
+    return option;
+}
+
 /* --- values ----------------------------------------------------------------------------------- */
 
 bool grrl_option_integer_of(const char *text, uint64_t low, uint64_t high, uint64_t *value)
@@ -164,6 +172,7 @@ static const char *take(const struct grrl_option *option, const char *text, char
     case GRRL_OPTION_NUMBER:
         return take_number(option, text, right);
     case GRRL_OPTION_CALL:
+    case GRRL_OPTION_EACH:
         return option->take(option->target, text);
     default:
         return take_integer(option, text, right);
@@ -251,9 +260,9 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
                                             const struct grrl_option *options, size_t n, int argc,
                                             char **argv, int *first)
 {
-    struct option table[GRRL_OPTIONS_MOST + 3];
-    bool given[GRRL_OPTIONS_MOST] = {false};
-    assert(n <= GRRL_OPTIONS_MOST);
+    struct option table[GRRL_OPTIONS_MAX + 3];
+    bool given[GRRL_OPTIONS_MAX] = {false};
+    assert(n <= GRRL_OPTIONS_MAX);
     make_getopt_table(options, n, table);
     optind = 0; /* restarts getopt */
     int id;
@@ -272,10 +281,10 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
         enum grrl_options_result result = take_option(program, &options[i], optarg, given[i]);
         if (result != GRRL_OPTIONS_RUN)
             return result;
-        given[i] = true;
+        given[i] = options[i].kind != GRRL_OPTION_EACH;
     }
-    if (argc - optind > program->most_arguments) {
-        (void)fprintf(stderr, "%s: %s: %s\n", program->name, argv[optind + program->most_arguments],
+    if (argc - optind > program->max_arguments) {
+        (void)fprintf(stderr, "%s: %s: %s\n", program->name, argv[optind + program->max_arguments],
                       program->arguments != NULL ? program->arguments
                                                  : "there are no arguments, only options");
         return try_help(program);

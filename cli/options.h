@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 /* Maximum number of rows. */
-enum { GRRL_OPTIONS_MOST = 48 };
+enum { GRRL_OPTIONS_MAX = 48 };
 
 /* What main should do next. The last two are exit statuses. */
 enum grrl_options_result { GRRL_OPTIONS_RUN = -1, GRRL_OPTIONS_DONE = 0, GRRL_OPTIONS_BAD = 2 };
@@ -31,7 +31,7 @@ struct grrl_program {
     const char *usage;     /* follows "Usage: " in --help, without the final line break */
     const char *intro;     /* text of --help before and after the options */
     const char *outro;     /* NULL: none */
-    int most_arguments;    /* arguments that are not options; usually 0 */
+    int max_arguments;     /* arguments that are not options; usually 0 */
     const char *arguments; /* the error text for a surplus argument; NULL: there are none */
 };
 
@@ -46,7 +46,8 @@ enum grrl_option_kind {
     GRRL_OPTION_U32,
     GRRL_OPTION_U64,
     GRRL_OPTION_NUMBER,
-    GRRL_OPTION_CALL
+    GRRL_OPTION_CALL,
+    GRRL_OPTION_EACH
 };
 
 /* A row, filled in by the functions below. Strings and target must outlive grrl_options_parse. */
@@ -79,6 +80,9 @@ struct grrl_option grrl_option_number(const char *name, const char *argument, co
                                       double low, double high, double scale, double *target);
 /* An option handled by a callback; argument NULL: a flag. */
 struct grrl_option grrl_option_call(const char *name, const char *argument, const char *help,
+                                    grrl_option_take take, void *context);
+/* The same for an option that may be given several times. */
+struct grrl_option grrl_option_each(const char *name, const char *argument, const char *help,
                                     grrl_option_take take, void *context);
 
 /* Parse the whole text as a whole number from low to high, or as a number that fits a float. False

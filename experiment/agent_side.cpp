@@ -60,7 +60,8 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     grrl_learner_config_default(&config.learner);
     config.policy = make_policy(phase, node, config.learner);
     config.learner.seed = phase.seed;
-    config.learner.perception.noise_m = std::max(least_noise_m, static_cast<float>(phase.noise_m));
+    config.learner.perception.noise_m =
+        std::max(least_noise_m, static_cast<float>(phase.world.tracker.noise_sigma_m));
     config.session_id = agent_session;
     config.now_us = now_us;
     config.context = this;
@@ -78,7 +79,7 @@ grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *nod
                                    grrl_learner_config &learner)
 {
     const Policy &policy = *phase.policy;
-    if (policy.make_chooser != nullptr) {
+    if (policy.make_chooser) {
         chooser_ = policy.make_chooser(node, phase.seed);
         return policy_of(*chooser_);
     }

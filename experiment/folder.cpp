@@ -2,6 +2,7 @@
 #include "folder.hpp"
 
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -18,36 +19,22 @@ namespace
 {
 
 /* FNV-1a. */
-std::string hash_of_file(const std::string &path)
+std::string hash_of(const std::string &bytes)
 {
     uint64_t hash = UINT64_C(14695981039346656037);
-    for (char byte : read_file(path).value_or(""))
+    for (char byte : bytes)
         hash = (hash ^ static_cast<unsigned char>(byte)) * UINT64_C(1099511628211);
     char text[20];
     (void)std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
     return text;
 }
 
-/* An object by its name; a file also by its content. */
-std::string object_line(const std::string &object)
-{
-    return read_file(object) ? object + " (" + hash_of_file(object) + ")" : object;
-}
-
-std::string settings_of(const Options &options, const Plan &plan)
+std::string settings_of(const Options &options)
 {
     std::ostringstream text;
-    text << "program " << hash_of_file("/proc/self/exe") << "\n"
-         << "seed " << options.seed << "\n"
+    text << "program " << hash_of(read_file("/proc/self/exe").value_or("")) << "\n"
          << "cap " << options.cap << "\n"
          << "noise " << options.noise_mm << "\n";
-    for (const Curve &curve : plan.curves)
-        text << "curve " << object_line(curve.object) << ", " << curve.policy->name << ", "
-             << curve.trials << " trials, before them "
-             << (curve.pretrain.empty()
-                     ? "none"
-                     : object_line(curve.pretrain) + ":" + std::to_string(curve.pretrain_trials))
-             << "\n";
     return text.str();
 }
 
@@ -69,13 +56,12 @@ std::pair<std::string, std::string> difference(const std::string &a, const std::
 
 } // namespace
 
-Folder::Folder(const Options &options, const Plan &plan) : root_(options.out)
+Folder::Folder(const Options &options) : root_(options.out)
 {
-    for (const Curve &curve : plan.curves)
-        trials_.push_back(curve.trials);
     make_folder(path("experiments"));
     lock();
-    check_settings(settings_of(options, plan));
+    check_settings(settings_of(options));
+    write_file(path(arguments_file), shared_arguments(options));
 }
 
 Folder::~Folder()
@@ -96,9 +82,9 @@ void Folder::lock()
 
 void Folder::check_settings(const std::string &settings) const
 {
-    std::optional<std::string> known = read_file(path("settings.txt"));
+    std::optional<std::string> known = read_file(path(settings_file));
     if (!known) {
-        write_file(path("settings.txt"), settings);
+        write_file(path(settings_file), settings);
         return;
     }
     if (*known == settings)
@@ -108,17 +94,36 @@ void Folder::check_settings(const std::string &settings) const
                              "' there, '" + here + "' here; name another folder or remove it");
 }
 
-std::string Folder::experiment_path(size_t curve, int experiment) const
+void Folder::take(const std::string &other) const
 {
-    char name[60];
-    (void)std::snprintf(name, sizeof name, "experiments/curve-%02zu-%04d.csv", curve + 1,
-                        experiment);
-    return path(name);
+    for (const char *name : {settings_file, arguments_file}) {
+        std::string here = read_file(path(name)).value_or("");
+        std::optional<std::string> there = read_file(other + "/" + name);
+        if (!there)
+            throw std::runtime_error(other + " is no folder of results: it has no " + name);
+        auto [its, ours] = difference(*there, here);
+        if (*there != here)
+            throw std::runtime_error(other + " holds another run: '" + its + "' there, '" + ours +
+                                     "' in the first folder or this program");
+    }
+    for (const auto &entry : std::filesystem::directory_iterator(other + "/experiments"))
+        if (entry.path().extension() == ".csv")
+            write_file(path("experiments/" + entry.path().filename().string()),
+                       read_file(entry.path()).value_or(""));
 }
 
-std::optional<Trials> Folder::load(size_t curve, int experiment) const
+std::string Folder::experiment_path(const Curve &curve, uint64_t seed) const
 {
-    std::optional<std::string> text = read_file(experiment_path(curve, experiment));
+    std::string key = curve.course.key + "\n" + std::to_string(curve.trials()) + "\n";
+    for (const Course &before : curve.before)
+        key += before.key + "\n" + std::to_string(before.trials) + "\n";
+    return path("experiments/" + curve.policy->name + "-" + hash_of(key) + "-" +
+                std::to_string(seed) + ".csv");
+}
+
+std::optional<Trials> Folder::load(const Curve &curve, uint64_t seed) const
+{
+    std::optional<std::string> text = read_file(experiment_path(curve, seed));
     if (!text)
         return std::nullopt;
     std::istringstream lines(*text);
@@ -135,18 +140,18 @@ std::optional<Trials> Folder::load(size_t curve, int experiment) const
         row.discovered = discovered != 0;
         trials.push_back(row);
     }
-    if (static_cast<int>(trials.size()) != trials_[curve])
+    if (static_cast<int>(trials.size()) != curve.trials())
         return std::nullopt;
     return trials;
 }
 
-void Folder::save(size_t curve, int experiment, const Trials &trials) const
+void Folder::save(const Curve &curve, uint64_t seed, const Trials &trials) const
 {
     std::ostringstream text;
     for (const TrialRow &row : trials)
         text << row.trial << "," << row.pushes << "," << (row.discovered ? 1 : 0) << ","
              << row.wrong_joints << "\n";
-    write_file(experiment_path(curve, experiment), text.str());
+    write_file(experiment_path(curve, seed), text.str());
 }
 
 } // namespace grrl_experiment

@@ -6,6 +6,7 @@
 
 #include "files.hpp"
 #include "gnuplot.hpp"
+#include "matrix.hpp"
 #include "results.hpp"
 
 namespace grrl_experiment
@@ -14,8 +15,13 @@ namespace grrl_experiment
 namespace
 {
 
+constexpr int most_points = 200; /* of a curve; with more there are lines only */
+
 /* Lines and bands average this many trials on either side, fewer at the ends. */
-constexpr int neighbours = 2;
+int neighbours(int trials)
+{
+    return std::max(2, trials / 50);
+}
 
 /* A block for each curve: the trial, its mean, and mean, low and high over the trials around it. */
 std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Experiments> &results)
@@ -23,12 +29,13 @@ std::string data_of(const Plan &plan, const Figure &figure, const std::vector<Ex
     std::ostringstream text;
     for (size_t c : figure.curves) {
         text << "# " << curve_label(plan.curves[c], true) << "\n";
-        int trials = plan.curves[c].trials;
+        Experiments rows = shown(figure, results, c);
+        int trials = plan.curves[c].trials();
         for (int trial = 1; trial <= trials; trial++) {
-            int reach = std::min({neighbours, trial - 1, trials - trial});
-            Mean around = pushes(results[c], trial - reach, trial + reach);
-            text << trial << "\t" << pushes(results[c], trial, trial).mean << "\t" << around.mean
-                 << "\t" << around.low() << "\t" << around.high() << "\n";
+            int reach = std::min({neighbours(trials), trial - 1, trials - trial});
+            Mean around = pushes(rows, trial - reach, trial + reach);
+            text << trial << "\t" << pushes(rows, trial, trial).mean << "\t" << around.mean << "\t"
+                 << around.low() << "\t" << around.high() << "\n";
         }
         text << "\n\n";
     }
@@ -47,14 +54,15 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
     }
     bool transfer = false;
     for (size_t c : figure.curves)
-        transfer = transfer || !plan.curves[c].pretrain.empty();
+        transfer = transfer || !plan.curves[c].before.empty();
     for (size_t i = 0; i < figure.curves.size(); i++) {
         const Curve &curve = plan.curves[figure.curves[i]];
         std::string color = curve.policy->color;
         /* in a transfer, the curve without pretraining is dashed */
-        bool dashed = transfer && curve.policy->learns() && curve.pretrain.empty();
-        parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
-                        "' notitle");
+        bool dashed = transfer && curve.policy->learns() && curve.before.empty();
+        if (curve.trials() <= most_points)
+            parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
+                            "' notitle");
         parts.push_back(index(i) + " using 1:3 with lines lw 2.5 dt " + (dashed ? "2" : "1") +
                         " lc rgb '" + color + "' title " +
                         gnuplot_quoted(curve_label(curve, false)));
@@ -71,7 +79,7 @@ std::string rows_of(const Plan &plan, const Figure &figure, const std::vector<Ex
 {
     std::ostringstream text;
     for (size_t c : figure.curves) {
-        int trials = plan.curves[c].trials;
+        int trials = plan.curves[c].trials();
         text << curve_label(plan.curves[c], false);
         for (Mean of : {pushes(results[c], 1, std::min(5, trials)),
                         pushes(results[c], std::max(1, trials - 9), trials)})
@@ -119,7 +127,9 @@ std::string rows_script(const Figure &figure)
 
 std::string curves_script(const Plan &plan, const Figure &figure)
 {
-    return "# Lines: means of up to five trials with 95% intervals; points: means of one trial.\n"
+    const char *what =
+        figure.bound ? "pushes above the clairvoyant" : "pushes until the structure is known";
+    return "# Lines: means over neighbouring trials with 95% intervals; points: of one trial.\n"
            "set terminal svg size 900,540 font 'Helvetica,Arial,sans-serif,15' "
            "background '#ffffff'\n"
            "set output " +
@@ -132,7 +142,9 @@ std::string curves_script(const Plan &plan, const Figure &figure)
            gnuplot_quoted(figure.title) +
            " noenhanced tc rgb '#222222'\n"
            "set xlabel 'trial' tc rgb '#222222'\n"
-           "set ylabel 'pushes until the structure is known' tc rgb '#222222'\n"
+           "set ylabel '" +
+           what +
+           "' tc rgb '#222222'\n"
            "set key outside bottom center horizontal reverse Left samplen 2 tc rgb '#222222' "
            "noenhanced\n"
            "set yrange [0:*]\n"
@@ -148,10 +160,23 @@ std::string curves_script(const Plan &plan, const Figure &figure)
 bool draw(const Folder &folder, const Plan &plan, const Figure &figure,
           const std::vector<Experiments> &results)
 {
-    bool rows = figure.kind == Figure::Kind::ROWS;
-    write_file(folder.path(figure.name + ".tsv"),
-               rows ? rows_of(plan, figure, results) : data_of(plan, figure, results));
-    std::string script = rows ? rows_script(figure) : curves_script(plan, figure);
+    std::string data;
+    std::string script;
+    switch (figure.kind) {
+    case Figure::Kind::CURVES:
+        data = data_of(plan, figure, results);
+        script = curves_script(plan, figure);
+        break;
+    case Figure::Kind::ROWS:
+        data = rows_of(plan, figure, results);
+        script = rows_script(figure);
+        break;
+    case Figure::Kind::MATRIX:
+        data = matrix_data(plan, figure, results);
+        script = matrix_script(plan, figure);
+        break;
+    }
+    write_file(folder.path(figure.name + ".tsv"), data);
     write_file(folder.path(figure.name + ".gp"), script);
     return run_gnuplot(folder.path(""), script);
 }

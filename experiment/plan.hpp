@@ -2,37 +2,52 @@
 #ifndef GRRL_EXPERIMENT_PLAN_HPP
 #define GRRL_EXPERIMENT_PLAN_HPP
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "object.hpp"
+#include "conditions.hpp"
 #include "policies.hpp"
 #include "result.hpp"
+#include "sides.hpp"
 
 namespace grrl_experiment
 {
 
 struct Options;
 
-/* A policy on an object, with or without pretraining on another object. */
-struct Curve {
-    std::string object; /* as given by the user */
-    const Policy *policy = nullptr;
-    std::string pretrain; /* object; empty: none */
-    int pretrain_trials = 0;
+/* A number of trials with one object, or with a stream that gives each trial one of its own. */
+struct Course {
+    std::string text; /* as given by the user */
     int trials = 0;
-    grrl_sim::ObjectSpec object_spec;
-    grrl_sim::ObjectSpec pretrain_spec;
+    std::string key; /* what the objects depend on: a file by its content */
+    Objects objects;
+    bool stream = false;
+};
 
-    std::string pretrain_text() const; /* RRRRR:50, or none */
+/* A policy on an object, with or without pretraining on others. */
+struct Curve {
+    Course course;
+    const Policy *policy = nullptr;
+    std::vector<Course> before; /* one after the other; empty: none */
+    Conditions conditions;      /* of all its courses */
+
+    std::string object() const; /* RPRPRPR, or RPRPRPR in links=0.7 */
+    int trials() const { return course.trials; }
+    int all_trials() const;            /* with those before */
+    std::string pretrain_text() const; /* RRRRR:50, or RRRRR:50, PRPRP:20, or none */
 };
 
 struct Figure {
-    enum class Kind { CURVES, ROWS }; /* pushes by trial, or a row of means per curve */
+    /* Pushes by trial; a row of means per curve; or for each object the curve without pretraining
+     * and those after each of the objects. */
+    enum class Kind { CURVES, ROWS, MATRIX };
     Kind kind = Kind::CURVES;
     std::string name; /* figure-3b, or curves */
     std::string title;
-    std::vector<size_t> curves; /* of the plan */
+    std::vector<size_t> curves;  /* of the plan */
+    bool drawn = true;           /* as a picture */
+    std::optional<size_t> bound; /* shows by how much the curves lie above this one */
 };
 
 struct Plan {
@@ -40,7 +55,9 @@ struct Plan {
     std::vector<Figure> figures;
 };
 
-/* 3b, 4a, .., all (of the paper), and ablations. */
+constexpr const char *interference = "interference"; /* a figure; --object may name its objects */
+
+/* 3b, 4a, .., all (of the paper), ablations and interference. */
 std::vector<std::string> figure_names();
 
 /* An error says which object is wrong and why. */

@@ -15,11 +15,6 @@ namespace
 
 constexpr uint16_t memory = 1000; /* grrl-agent's default */
 
-std::unique_ptr<Chooser> rule(const grrl_sim::Node *, uint64_t)
-{
-    return make_rule();
-}
-
 std::unique_ptr<Chooser> motion(const grrl_sim::Node *, uint64_t)
 {
     return make_motion();
@@ -30,12 +25,37 @@ std::unique_ptr<Chooser> clairvoyant(const grrl_sim::Node *node, uint64_t seed)
     return make_clairvoyant([node]() -> const grrl_sim::World & { return node->world(); }, seed);
 }
 
-Policy chooser_row(const char *name, const char *text, const char *color,
-                   std::unique_ptr<Chooser> (*make)(const grrl_sim::Node *, uint64_t))
+Policy chooser_row(const std::string &name, const std::string &text, const char *color,
+                   decltype(Policy::make_chooser) make)
 {
     Policy policy{name, text, &chooser_policy, color, memory};
-    policy.make_chooser = make;
+    policy.make_chooser = std::move(make);
     return policy;
+}
+
+/* The rule in its six orders; the first one is called just rule. */
+void add_rules(std::vector<Policy> &table)
+{
+    const struct {
+        const char *order;
+        const char *text;
+        const char *color;
+    } rows[] = {
+        {"aps", "along, across, at 45 degrees", "#2f8f4e"},
+        {"asp", "along, at 45 degrees, across", "#7fb87f"},
+        {"pas", "across, along, at 45 degrees", "#4e9f9f"},
+        {"psa", "across, at 45 degrees, along", "#7fc4c4"},
+        {"sap", "at 45 degrees, along, across", "#9aa33a"},
+        {"spa", "at 45 degrees, across, along", "#c3cb72"},
+    };
+    for (const auto &row : rows) {
+        bool first = std::string(row.order) == "aps";
+        table.push_back(chooser_row(
+            first ? "rule" : std::string("rule-") + row.order,
+            std::string("no learning: the longest body; ") + row.text + "; no repeats", row.color,
+            [order = row.order](const grrl_sim::Node *, uint64_t) { return make_rule(order); }));
+        table.back().is_rule = true;
+    }
 }
 
 std::vector<Policy> make_table()
@@ -46,9 +66,7 @@ std::vector<Policy> make_table()
     for (const grrl_policy_type *const *type = grrl_policies; *type != nullptr; type++)
         table.push_back({(*type)->name, (*type)->text, *type,
                          colors[table.size() % (sizeof colors / sizeof colors[0])], memory});
-    table.push_back(chooser_row(
-        "rule", "no learning: the longest body; along, across, at 45 degrees; no repeats",
-        "#2f8f4e", rule));
+    add_rules(table);
     table.push_back(chooser_row("motion",
                                 "no learning: the most predicted motion in joints still uncertain",
                                 "#8a4fb0", motion));

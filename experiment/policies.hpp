@@ -22,11 +22,13 @@ struct Policy {
     const char *color;            /* in pictures, #rrggbb */
     uint16_t capacity;            /* cases or experiences */
     bool needs_truth = false;     /* requires the simulator in the same process */
+    bool is_rule = false;         /* rule in one of its orders */
     /* Changes the defaults; config belongs to the policy's type. Empty: no change. */
     std::function<void(grrl_learner_config &learner, void *config)> configure = {};
     /* Makes the chooser for chooser_policy; nullptr for a policy of the library. node: the
      * simulator in this process, or nullptr. */
-    std::unique_ptr<Chooser> (*make_chooser)(const grrl_sim::Node *node, uint64_t seed) = nullptr;
+    std::function<std::unique_ptr<Chooser>(const grrl_sim::Node *node, uint64_t seed)>
+        make_chooser = {};
 
     /* A policy that does not learn keeps nothing, and pretraining has no effect. */
     bool learns() const { return type->entries != nullptr; }

@@ -3,6 +3,7 @@
 
 #include <sstream>
 
+#include "claims.hpp"
 #include "files.hpp"
 #include "results.hpp"
 
@@ -48,23 +49,47 @@ std::string table_of(const Plan &plan, const Figure &figure,
                      const std::vector<Experiments> &results)
 {
     std::ostringstream html;
-    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials);
+    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials());
     html << "<table>\n<tr><th>trials</th>";
     for (const Range &column : columns)
         html << "<th>" << column.label << "</th>";
     html << "<th>at the cap</th></tr>\n";
     for (size_t c : figure.curves) {
+        Experiments rows = shown(figure, results, c);
         html << "<tr><td>" << escaped(curve_label(plan.curves[c], false)) << "</td>";
         for (const Range &column : columns)
-            html << "<td>" << mean_text(pushes(results[c], column.first, column.last), "&plusmn;")
+            html << "<td>" << mean_text(pushes(rows, column.first, column.last), "&plusmn;")
                  << "</td>";
         char share[20];
         (void)std::snprintf(share, sizeof share, "%.1f%%",
-                            100.0 * capped(results[c], 1, plan.curves[c].trials));
+                            100.0 * capped(rows, 1, plan.curves[c].trials()));
         html << "<td>" << share << "</td></tr>\n";
+    }
+    std::vector<Experiments> rules = every_rule(plan, figure, results);
+    if (!rules.empty()) {
+        html << "<tr><td>every rule</td>";
+        for (const Range &column : columns)
+            html << "<td>" << means_text(rules, column.first, column.last) << "</td>";
+        html << "<td></td></tr>\n";
     }
     html << "</table>\n";
     return html.str();
+}
+
+const char *caption_of(Figure::Kind kind)
+{
+    switch (kind) {
+    case Figure::Kind::CURVES:
+        return "<p>Lines: means over neighbouring trials with their intervals; points: means of "
+               "one "
+               "trial. In a transfer, dashed lines are without pretraining.</p>\n";
+    case Figure::Kind::ROWS:
+        return "<p>Means with their intervals over the first five trials (hollow) and the last ten "
+               "(filled).</p>\n";
+    case Figure::Kind::MATRIX:
+        break;
+    }
+    return "<p>Paired differences; * marks those beyond their intervals.</p>\n";
 }
 
 bool is_used(const Plan &plan, const Policy &policy)
@@ -92,7 +117,8 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
                         const std::vector<Experiments> &results)
 {
     std::ostringstream html;
-    html << head << "<pre>" << escaped(options.command) << "</pre>\n<p>" << options.experiments
+    html << head << "<pre>" << escaped(options.command) << "</pre>\n<p>"
+         << experiment_seeds(options).size()
          << " experiments for each curve, each starting without experience; means with 95% "
             "intervals (t "
             "distribution over experiments). A trial ends when the supervisor sees the true "
@@ -104,14 +130,14 @@ std::string report_html(const Options &options, const Folder &folder, const Plan
         if (picture)
             html << "<img alt=\"" << escaped(figure.title) << "\" src=\"data:image/svg+xml;base64,"
                  << base64(*picture) << "\">\n"
-                 << (figure.kind == Figure::Kind::CURVES
-                         ? "<p>Lines: means of up to five trials with their intervals; points: "
-                           "means of one trial. In a transfer, dashed lines are without "
-                           "pretraining.</p>\n"
-                         : "<p>Means with their intervals over the first five trials (hollow) and "
-                           "the last ten (filled).</p>\n");
-        html << table_of(plan, figure, results);
+                 << caption_of(figure.kind);
+        html << (figure.kind == Figure::Kind::MATRIX
+                     ? "<pre>" + escaped(text_table(plan, figure, results)) + "</pre>\n"
+                     : table_of(plan, figure, results));
     }
+    std::string claims = claims_table(plan, results);
+    if (!claims.empty())
+        html << "<h2>Claims</h2>\n<pre>" << escaped(claims) << "</pre>\n";
     html << "<h2>Policies</h2>\n<table>\n";
     for (const auto *policies_of : {&policies(), &ablations()})
         for (const Policy &policy : *policies_of)

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 #include <sstream>
 
 #include "files.hpp"
+#include "matrix.hpp"
+#include "object_stream.hpp"
 
 namespace grrl_experiment
 {
@@ -15,7 +18,7 @@ namespace
 
 std::string curve_fields(const Curve &curve)
 {
-    return csv_field(curve.object) + "," + curve.policy->name + "," +
+    return csv_field(curve.object()) + "," + curve.policy->name + "," +
            csv_field(curve.pretrain_text());
 }
 
@@ -39,32 +42,57 @@ std::string summary_row(const Curve &curve, const Experiments &experiments, cons
 
 } // namespace
 
-uint64_t experiment_seed(uint64_t seed, int experiment)
-{
-    return 1000 * seed + static_cast<uint64_t>(experiment);
-}
-
 uint64_t pretrain_seed(uint64_t experiment_seed)
 {
     return experiment_seed + UINT64_C(1000000000000000);
 }
 
-std::string trials_csv(const Plan &plan, const std::vector<Experiments> &results, uint64_t seed)
+std::string trials_csv(const Plan &plan, const std::vector<Experiments> &results,
+                       const std::vector<uint64_t> &seeds)
 {
     std::ostringstream text;
     text << "object,policy,pretrain,experiment,seed,trial,pushes,outcome,wrong_joints\n";
     for (size_t c = 0; c < plan.curves.size(); c++) {
-        int experiment = 0;
-        for (const Trials &trials : results[c]) {
-            experiment++;
-            for (const TrialRow &row : trials)
-                text << curve_fields(plan.curves[c]) << "," << experiment << ","
-                     << experiment_seed(seed, experiment) << "," << row.trial << "," << row.pushes
-                     << "," << (row.discovered ? "discovered" : "capped") << "," << row.wrong_joints
+        for (size_t e = 0; e < results[c].size(); e++) {
+            std::string fields = curve_fields(plan.curves[c]) + "," + std::to_string(e + 1) + "," +
+                                 std::to_string(seeds[e]) + ",";
+            for (const TrialRow &row : results[c][e])
+                text << fields << row.trial << "," << row.pushes << ","
+                     << (row.discovered ? "discovered" : "capped") << "," << row.wrong_joints
                      << "\n";
         }
     }
     return text.str();
+}
+
+std::string objects_csv(const Plan &plan, const std::vector<uint64_t> &seeds)
+{
+    std::ostringstream text;
+    std::set<std::string> done;
+    for (const Curve &curve : plan.curves) {
+        if (!curve.course.stream || !done.insert(curve.object()).second)
+            continue;
+        for (uint64_t seed : seeds)
+            for (int trial = 1; trial <= curve.trials(); trial++) {
+                grrl_sim::ObjectSpec object = curve.course.objects(seed, trial);
+                text << csv_field(curve.object()) << "," << seed << "," << trial << ","
+                     << object.links.size() << "," << object.joints.size() << ","
+                     << csv_field(grrl_sim::term_of(object)) << "\n";
+            }
+    }
+    return done.empty() ? "" : "stream,seed,trial,links,joints,object\n" + text.str();
+}
+
+Experiments shown(const Figure &figure, const std::vector<Experiments> &results, size_t curve)
+{
+    Experiments experiments = results[curve];
+    if (!figure.bound)
+        return experiments;
+    const Experiments &bound = results[*figure.bound];
+    for (size_t e = 0; e < experiments.size(); e++)
+        for (size_t t = 0; t < experiments[e].size(); t++)
+            experiments[e][t].pushes -= bound[e][t].pushes;
+    return experiments;
 }
 
 std::string summary_csv(const Plan &plan, const std::vector<Experiments> &results)
@@ -73,9 +101,9 @@ std::string summary_csv(const Plan &plan, const std::vector<Experiments> &result
         "object,policy,pretrain,trials,first,last,experiments,mean,low,high,capped\n";
     for (size_t c = 0; c < plan.curves.size(); c++) {
         const Curve &curve = plan.curves[c];
-        for (const Range &range : ranges(curve.trials))
+        for (const Range &range : ranges(curve.trials()))
             text += summary_row(curve, results[c], range);
-        for (int trial = 1; trial <= curve.trials; trial++)
+        for (int trial = 1; trial <= curve.trials(); trial++)
             text += summary_row(curve, results[c], {trial, trial, std::to_string(trial)});
     }
     return text;
@@ -83,9 +111,9 @@ std::string summary_csv(const Plan &plan, const std::vector<Experiments> &result
 
 std::string curve_label(const Curve &curve, bool with_object)
 {
-    std::string label = with_object ? curve.object + " " : "";
+    std::string label = with_object ? curve.object() + " " : "";
     label += curve.policy->name;
-    if (!curve.pretrain.empty())
+    if (!curve.before.empty())
         label += " after " + curve.pretrain_text();
     return label;
 }
@@ -100,15 +128,45 @@ std::string mean_text(const Mean &mean, const char *plus_minus)
     return text;
 }
 
+std::string means_text(const std::vector<Experiments> &curves, int first, int last)
+{
+    if (curves.empty())
+        return "-";
+    std::vector<double> means;
+    for (const Experiments &curve : curves)
+        means.push_back(pushes(curve, first, last).mean);
+    auto ends = std::minmax_element(means.begin(), means.end());
+    char text[60];
+    if (curves.size() == 1)
+        return mean_text(pushes(curves[0], first, last), "+-");
+    (void)std::snprintf(text, sizeof text, "%.1f to %.1f", *ends.first, *ends.second);
+    return text;
+}
+
+std::vector<Experiments> every_rule(const Plan &plan, const Figure &figure,
+                                    const std::vector<Experiments> &results)
+{
+    std::vector<Experiments> rules;
+    size_t orders = 0;
+    for (const Policy &policy : policies())
+        orders += policy.is_rule ? 1 : 0;
+    for (size_t c : figure.curves)
+        if (plan.curves[c].policy->is_rule)
+            rules.push_back(shown(figure, results, c));
+    return rules.size() == orders ? rules : std::vector<Experiments>{};
+}
+
 std::string text_table(const Plan &plan, const Figure &figure,
                        const std::vector<Experiments> &results)
 {
+    if (figure.kind == Figure::Kind::MATRIX)
+        return matrix_table(plan, figure, results);
     std::ostringstream text;
     text << figure.title << "\n";
-    size_t width = 8;
+    size_t width = 10;
     for (size_t c : figure.curves)
         width = std::max(width, curve_label(plan.curves[c], false).size());
-    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials);
+    std::vector<Range> columns = ranges(plan.curves[figure.curves[0]].trials());
     auto cell = [&text](const std::string &s, size_t size) {
         text << s << std::string(size > s.size() ? size - s.size() : 0, ' ');
     };
@@ -118,22 +176,31 @@ std::string text_table(const Plan &plan, const Figure &figure,
         cell(column.label, 14);
     text << "capped  wrong joints\n";
     for (size_t c : figure.curves) {
+        Experiments rows = shown(figure, results, c);
         text << "  ";
         cell(curve_label(plan.curves[c], false), width + 2);
         for (const Range &column : columns)
-            cell(mean_text(pushes(results[c], column.first, column.last), "+-"), 14);
+            cell(mean_text(pushes(rows, column.first, column.last), "+-"), 14);
         double wrong = 0.0;
         double trials = 0.0;
-        for (const Trials &experiment : results[c])
+        for (const Trials &experiment : rows)
             for (const TrialRow &row : experiment) {
                 wrong += row.wrong_joints;
                 trials += 1.0;
             }
         char rest[40];
         (void)std::snprintf(rest, sizeof rest, "%5.1f%%  %.2f",
-                            100.0 * capped(results[c], 1, plan.curves[c].trials),
+                            100.0 * capped(rows, 1, plan.curves[c].trials()),
                             wrong / std::max(trials, 1.0));
         text << rest << "\n";
+    }
+    std::vector<Experiments> rules = every_rule(plan, figure, results);
+    if (!rules.empty()) {
+        text << "  ";
+        cell("every rule", width + 2);
+        for (const Range &column : columns)
+            cell(means_text(rules, column.first, column.last), 14);
+        text << "\n";
     }
     return text.str();
 }

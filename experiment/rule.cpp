@@ -11,16 +11,28 @@ namespace grrl_experiment
 namespace
 {
 
-/* Indices into grrl_direction_deg: 0, 180, 90, 270, 45, 225 degrees. */
-constexpr uint8_t order[GRRL_DIRECTIONS] = {0, 3, 2, 5, 1, 4};
+/* An index into grrl_direction_deg: 0, 45 or 90 degrees. Three further on is the opposite one. */
+uint8_t direction_of(char way)
+{
+    if (way == 'a')
+        return 0;
+    return way == 'p' ? uint8_t{2} : uint8_t{1};
+}
 
 class Rule : public Chooser
 {
 public:
+    explicit Rule(const std::string &order)
+    {
+        for (char way : order)
+            for (int opposite : {0, 3})
+                order_.push_back(static_cast<uint8_t>(direction_of(way) + opposite));
+    }
     void begin_trial() override { tried_.clear(); }
     Action choose(const grrl_model &model) override;
 
 private:
+    std::vector<uint8_t> order_;
     Tried tried_;
 };
 
@@ -33,7 +45,7 @@ Action Rule::choose(const grrl_model &model)
         return model.body[a].length_m > model.body[b].length_m;
     });
     for (int body : bodies) {
-        for (uint8_t direction : order) {
+        for (uint8_t direction : order_) {
             Action action{model.body[body].number, direction};
             if (!tried_.has(action)) {
                 tried_.add(action);
@@ -41,14 +53,14 @@ Action Rule::choose(const grrl_model &model)
             }
         }
     }
-    return {model.body[bodies[0]].number, order[0]}; /* unreachable: one push was left */
+    return {model.body[bodies[0]].number, order_[0]}; /* unreachable: one push was left */
 }
 
 } // namespace
 
-std::unique_ptr<Chooser> make_rule()
+std::unique_ptr<Chooser> make_rule(const std::string &order)
 {
-    return std::make_unique<Rule>();
+    return std::make_unique<Rule>(order);
 }
 
 } // namespace grrl_experiment

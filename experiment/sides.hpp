@@ -31,14 +31,17 @@ struct TrialRow {
     int wrong_joints = 0;    /* wrong joints ever estimated in the trial */
 };
 
-/* A number of trials with one object. */
+/* The object of a trial, counted from 1, in a run with this seed. */
+using Objects = std::function<grrl_sim::ObjectSpec(uint64_t seed, int32_t trial)>;
+
+/* A number of trials without a break. */
 struct Phase {
-    grrl_sim::ObjectSpec object;
+    Objects objects;
     const Policy *policy = nullptr;
     int trials = 1;
     int cap = 100;
     uint64_t seed = 1;
-    double noise_m = 0.0007; /* of a tracked point; known to the agent */
+    grrl_sim::WorldParams world; /* the agent knows the noise of a tracked point */
 };
 
 /* The agent's core and its policy. */

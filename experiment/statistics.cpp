@@ -64,9 +64,11 @@ double capped(const Experiments &experiments, int first, int last)
 std::vector<Range> ranges(int trials)
 {
     std::vector<Range> chosen;
-    const int ends[][2] = {{1, 5}, {6, 10}, {11, 20}, {21, 40}};
+    const int ends[][2] = {{1, 5},       {6, 10},      {11, 20},     {21, 40},
+                           {41, 100},    {101, 200},   {201, 500},   {501, 1000},
+                           {1001, 2000}, {2001, 5000}, {5001, 10000}};
     for (const auto &end : ends)
-        if (end[0] <= trials) {
+        if (end[0] <= trials && (end[0] <= 21 || end[1] <= trials)) {
             int last = std::min(end[1], trials);
             chosen.push_back({end[0], last, std::to_string(end[0]) + "-" + std::to_string(last)});
         }

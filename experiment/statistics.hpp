@@ -38,7 +38,8 @@ double capped(const Experiments &experiments, int first, int last);
 /* The two-sided 95% quantile of Student's t. */
 double t_quantile(int degrees);
 
-/* The ranges of trials that tables show: first five, 6-10, 11-20, 21-40, last ten, all. */
+/* The ranges of trials that tables show: first five, 6-10, 11-20, 21-40, last ten, all; and
+ * 41-100, 101-200, .. of as many trials. */
 struct Range {
     int first;
     int last;

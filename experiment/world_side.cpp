@@ -20,8 +20,10 @@ WorldSide::WorldSide(lcm_t *lcm, const Phase &phase, Clock clock, OnTrial on_tri
     : on_trial_(std::move(on_trial)), model_(std::make_unique<grrl_wire_model>())
 {
     grrl_sim::NodeConfig config;
-    config.object = phase.object;
-    config.world.tracker.noise_sigma_m = phase.noise_m;
+    config.next_object = [objects = phase.objects, seed = phase.seed](int32_t trial) {
+        return objects(seed, trial);
+    };
+    config.world = phase.world;
     config.seed = phase.seed;
     config.trials = phase.trials;
     config.cap = phase.cap;

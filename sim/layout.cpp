@@ -243,6 +243,59 @@ bool within_limits(const ObjectSpec &object, const std::vector<double> &values)
     return true;
 }
 
+/* The size of the smaller of a joint's links in standard links, as a length and as a mass. */
+struct Size {
+    double length = 1.0;
+    double mass = 1.0;
+};
+
+Size smaller_link(const ObjectSpec &object, const JointSpec &joint)
+{
+    const LinkSpec standard;
+    Size least;
+    bool first = true;
+    for (int i : {joint.a, joint.b}) {
+        const LinkSpec &link = object.links[static_cast<size_t>(i)];
+        Size size{link.half_length_m / standard.half_length_m, link.mass_kg / standard.mass_kg};
+        if (link.fixed || (!first && size.mass * size.length >= least.mass * least.length))
+            continue;
+        least = size;
+        first = false;
+    }
+    return least;
+}
+
+void make_similar(const ObjectSpec &object, JointSpec &joint)
+{
+    Size size = smaller_link(object, joint);
+    if (joint.type == GRRL_REVOLUTE) {
+        joint.friction *= size.mass * size.length;
+        return;
+    }
+    joint.friction *= size.mass;
+    for (double *value : {&joint.lower, &joint.upper, &joint.initial_lower, &joint.initial_upper})
+        *value *= size.length;
+}
+
+std::string scale_object(ObjectSpec &object, const ObjectScale &scale)
+{
+    for (const JointSpec &joint : object.joints)
+        if (joint.given && scale.length != 1.0)
+            return "joints with places of their own cannot follow links of another length";
+    for (LinkSpec &link : object.links) {
+        if (scale.length != 1.0)
+            resize_link(link, scale.length, 1.0);
+        link.features_min = std::max(3, static_cast<int>(scale.features * link.features_min + 0.5));
+        link.features_max = std::max(3, static_cast<int>(scale.features * link.features_max + 0.5));
+    }
+    for (JointSpec &joint : object.joints) {
+        joint.friction *= scale.friction;
+        if (scale.similar && !joint.given)
+            make_similar(object, joint);
+    }
+    return {};
+}
+
 /* Makes the closed configuration the zero of the joints whose geometry this file chose. */
 void set_zero(ObjectSpec &object, const std::vector<bool> &on_loop,
               const std::vector<double> &values)
@@ -324,8 +377,11 @@ std::string close_object(ObjectSpec &object, const std::vector<bool> &on_loop)
 
 } // namespace
 
-std::string finish_object(ObjectSpec &object)
+std::string finish_object(ObjectSpec &object, const ObjectScale &scale)
 {
+    std::string problem = scale_object(object, scale);
+    if (!problem.empty())
+        return problem;
     Layout(object).run();
     std::vector<bool> on_loop = loop_joints(object);
     if (std::find(on_loop.begin(), on_loop.end(), true) == on_loop.end())

@@ -1,8 +1,6 @@
 /* The course of a trial as supervisor, tracker and robot see it, and incoming messages. */
 #include "node.hpp"
 
-#include <stdexcept>
-
 #include "adapter.hpp"
 #include "grrl/base/settling.h"
 #include "structure.hpp"
@@ -41,7 +39,8 @@ PushCommand push_of(const grrl_push_command_t &c)
 } // namespace
 
 Node::Node(lcm_t *lcm, NodeConfig config)
-    : lcm_(lcm), config_(std::move(config)), supervisor_(visible_structure(config_.object))
+    : lcm_(lcm), config_(std::move(config)), subscriptions_(lcm),
+      supervisor_(visible_structure(config_.object))
 {
     grrl_wire_bind_points(&points_);
     agent_heard_us_ = config_.now_us();
@@ -50,12 +49,6 @@ Node::Node(lcm_t *lcm, NodeConfig config)
     subscribe(GRRL_CHANNEL_DECISION, receive<&Node::on_decision>);
     subscribe(GRRL_CHANNEL_AGENT_STATUS, receive<&Node::on_agent_status>);
     begin_trial();
-}
-
-Node::~Node()
-{
-    for (lcm_subscription_t *subscription : subscriptions_)
-        (void)lcm_unsubscribe(lcm_, subscription);
 }
 
 template <void (Node::*handler)(const lcm_recv_buf_t &)>
@@ -69,12 +62,8 @@ void Node::receive(const lcm_recv_buf_t *buffer, const char *channel, void *user
 
 void Node::subscribe(const char *channel, lcm_msg_handler_t handler)
 {
-    lcm_subscription_t *subscription = lcm_subscribe(lcm_, channel, handler, this);
-    if (subscription == nullptr)
-        throw std::runtime_error(std::string("LCM refused the subscription to ") + channel);
     /* 0 is unbounded; LCM's default of 30 silently drops the newest message. */
-    (void)lcm_subscription_set_queue_capacity(subscription, 0);
-    subscriptions_.push_back(subscription);
+    (void)lcm_subscription_set_queue_capacity(subscriptions_.add(channel, handler, this), 0);
 }
 
 /* Reports the first malformed message and only counts later ones. */
@@ -172,6 +161,10 @@ void Node::begin_trial()
     command_ = {};
     decision_ = {};
     status_ = {};
+    if (config_.next_object) {
+        config_.object = config_.next_object(trial_id_);
+        supervisor_ = Supervisor(visible_structure(config_.object));
+    }
     world_ =
         std::make_unique<World>(config_.object, config_.world, trial_seed(config_.seed, trial_id_));
     if (config_.camera != nullptr)

@@ -18,6 +18,7 @@
 #include <lcm/lcm.h>
 
 #include "camera.hpp"
+#include "subscriptions.hpp"
 #include "supervisor.hpp"
 #include "wire.h"
 #include "world.hpp"
@@ -33,6 +34,7 @@ struct TrialResult {
 
 struct NodeConfig {
     ObjectSpec object;
+    std::function<ObjectSpec(int32_t trial_id)> next_object; /* in its place, for each trial */
     WorldParams world;
     uint64_t seed = 1;
     int trials = 1; /* number of trials, not counting aborted ones */
@@ -55,7 +57,6 @@ class Node
 public:
     /* Throws std::runtime_error if LCM refuses a subscription. */
     Node(lcm_t *lcm, NodeConfig config);
-    ~Node();
     Node(const Node &) = delete;
     Node &operator=(const Node &) = delete;
 
@@ -129,7 +130,7 @@ private:
 
     lcm_t *lcm_;
     NodeConfig config_;
-    std::vector<lcm_subscription_t *> subscriptions_;
+    grrl_lcm::Subscriptions subscriptions_;
     Supervisor supervisor_;
     std::unique_ptr<World> world_;
 

@@ -31,12 +31,12 @@ bool is_numbered(const std::string &name)
 
 /* Reads a bare word as a term. Most such words are incomplete names of files or
  * objects, not links. */
-Result<ObjectSpec> object_from_word(const std::string &text)
+Result<ObjectSpec> object_from_word(const std::string &text, const ObjectScale &scale)
 {
     std::string path = object_path(text);
     if (!path.empty())
-        return object_from_file(path);
-    Result<ObjectSpec> object = object_from_term(text);
+        return object_from_file(path, scale);
+    Result<ObjectSpec> object = object_from_term(text, scale);
     if (object && object.value->links.size() == 1 && !is_numbered(object.value->links[0].name))
         object = Result<ObjectSpec>::bad("write a single link of this name as L(" + text + ")");
     if (!object)
@@ -76,6 +76,14 @@ void set_feature_range(LinkSpec &link)
     link.features_max = std::clamp(static_cast<int>(14.0 * area + 0.5), fewest + 4, 36);
 }
 
+void resize_link(LinkSpec &link, double length, double width)
+{
+    link.half_length_m *= length;
+    link.half_width_m *= width;
+    link.mass_kg *= length * width;
+    set_feature_range(link);
+}
+
 JointSpec default_joint(grrl_joint_type type, int a, int b)
 {
     bool turns = type == GRRL_REVOLUTE;
@@ -91,7 +99,7 @@ JointSpec default_joint(grrl_joint_type type, int a, int b)
     return joint;
 }
 
-Result<ObjectSpec> object_from_chain(const std::string &letters)
+Result<ObjectSpec> object_from_chain(const std::string &letters, const ObjectScale &scale)
 {
     ObjectSpec object;
     grrl_graph_clear(&object.truth);
@@ -125,7 +133,7 @@ Result<ObjectSpec> object_from_chain(const std::string &letters)
             return Result<ObjectSpec>::bad("the graph of the chain is full");
         object.joints.push_back(default_joint(type, a, a + 1));
     }
-    std::string problem = finish_object(object);
+    std::string problem = finish_object(object, scale);
     return problem.empty() ? Result<ObjectSpec>::good(object) : Result<ObjectSpec>::bad(problem);
 }
 
@@ -162,29 +170,29 @@ Result<ObjectSpec> links_and_joints(const std::string &text, TermPosition *error
     return Result<ObjectSpec>::good(object);
 }
 
-Result<ObjectSpec> object_from_term(const std::string &text)
+Result<ObjectSpec> object_from_term(const std::string &text, const ObjectScale &scale)
 {
     TermPosition position;
     Result<ObjectSpec> object = links_and_joints(text, &position);
     if (!object)
         return Result<ObjectSpec>::bad(at_position(position, object.error));
-    std::string problem = finish_object(*object.value);
+    std::string problem = finish_object(*object.value, scale);
     return problem.empty() ? object : Result<ObjectSpec>::bad(problem);
 }
 
-Result<ObjectSpec> object_from_text(const std::string &text)
+Result<ObjectSpec> object_from_text(const std::string &text, const ObjectScale &scale)
 {
     bool relational = text.find_first_of("(&") != std::string::npos;
     bool path = text.find_first_of("./\\") != std::string::npos;
     bool capitals =
         !text.empty() && text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string::npos;
     if (relational)
-        return object_from_term(text);
+        return object_from_term(text, scale);
     if (path)
-        return object_from_file(text);
+        return object_from_file(text, scale);
     if (capitals || text.empty())
-        return object_from_chain(text);
-    return object_from_word(text);
+        return object_from_chain(text, scale);
+    return object_from_word(text, scale);
 }
 
 } // namespace grrl_sim

@@ -86,26 +86,40 @@ void set_feature_range(LinkSpec &link);
 /* A joint without geometry, with the limits and friction of its type. */
 JointSpec default_joint(grrl_joint_type type, int a, int b);
 
+/* Makes a link longer and wider; its mass and its number of features follow the area. */
+void resize_link(LinkSpec &link, double length, double width);
+
+/* An object as it would be in another world; the factors are 1 in the default one. */
+struct ObjectScale {
+    double length = 1.0;   /* of every link, with its mass and number of features */
+    double features = 1.0; /* of their number on every link */
+    double friction = 1.0; /* of every joint */
+    /* Friction follows the size of the smaller of a joint's links: the mass for sliding, mass times
+     * length for turning, as the table's friction does. Sliding joints move in proportion to its
+     * length. So an object of any size moves like its larger twin. */
+    bool similar = false;
+};
+
 /* n letters R and P give n joints between n + 1 links in a row. */
-Result<ObjectSpec> object_from_chain(const std::string &letters);
+Result<ObjectSpec> object_from_chain(const std::string &letters, const ObjectScale &scale = {});
 
 /* Accepts any term that is a kinematic structure; errors carry line and column. */
-Result<ObjectSpec> object_from_term(const std::string &term);
+Result<ObjectSpec> object_from_term(const std::string &term, const ObjectScale &scale = {});
 
 /* A chain, a term, the path of a file, or the name of an object that comes with grrl. */
-Result<ObjectSpec> object_from_text(const std::string &text);
+Result<ObjectSpec> object_from_text(const std::string &text, const ObjectScale &scale = {});
 
 /*
  * Parts of object_from_term, for object_file.cpp. The first makes the links and joints of a term
  * with default dimensions and no geometry; the caller may prefix its errors, for example with
- * "file:3:". The second adds the geometry and checks the loops.
+ * "file:3:". The second scales, adds the geometry and checks the loops; it returns what is wrong.
  */
 struct TermPosition {
     unsigned line = 1;
     unsigned column = 1;
 };
 Result<ObjectSpec> links_and_joints(const std::string &term, TermPosition *error_position);
-std::string finish_object(ObjectSpec &object);
+std::string finish_object(ObjectSpec &object, const ObjectScale &scale = {});
 
 } // namespace grrl_sim
 

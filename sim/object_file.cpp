@@ -41,7 +41,7 @@ class Parser
 public:
     explicit Parser(std::string path) : path_(std::move(path)) {}
 
-    Result<ObjectSpec> parse(const std::string &text)
+    Result<ObjectSpec> parse(const std::string &text, const ObjectScale &scale)
     {
         std::istringstream stream(text);
         std::string line;
@@ -51,7 +51,7 @@ public:
             fail(1, 1,
                  "the file has no term; the first statement must be 'term R(l1, l2)' or similar");
         if (error_.empty()) {
-            std::string problem = finish_object(object_);
+            std::string problem = finish_object(object_, scale);
             if (!problem.empty())
                 fail(term_line_, 1, problem);
         }
@@ -201,12 +201,13 @@ private:
 
 } // namespace
 
-Result<ObjectSpec> object_from_file_text(const std::string &text, const std::string &path)
+Result<ObjectSpec> object_from_file_text(const std::string &text, const std::string &path,
+                                         const ObjectScale &scale)
 {
-    return Parser(path).parse(text);
+    return Parser(path).parse(text, scale);
 }
 
-Result<ObjectSpec> object_from_file(const std::string &path)
+Result<ObjectSpec> object_from_file(const std::string &path, const ObjectScale &scale)
 {
     std::ifstream file(path);
     if (!file)
@@ -214,7 +215,7 @@ Result<ObjectSpec> object_from_file(const std::string &path)
                                               "chain such as RPR or a term such as R(l1, l2)");
     std::ostringstream text;
     text << file.rdbuf();
-    return object_from_file_text(text.str(), path);
+    return object_from_file_text(text.str(), path, scale);
 }
 
 } // namespace grrl_sim

@@ -22,10 +22,11 @@ namespace grrl_sim
 {
 
 /* Errors start with path:line:column. */
-Result<ObjectSpec> object_from_file(const std::string &path);
+Result<ObjectSpec> object_from_file(const std::string &path, const ObjectScale &scale = {});
 
 /* Reads from a text instead; `path` appears only in errors. */
-Result<ObjectSpec> object_from_file_text(const std::string &text, const std::string &path);
+Result<ObjectSpec> object_from_file_text(const std::string &text, const std::string &path,
+                                         const ObjectScale &scale = {});
 
 } // namespace grrl_sim
 

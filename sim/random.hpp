@@ -15,7 +15,7 @@
 namespace grrl_sim
 {
 
-enum class Stream : uint64_t { OBJECT = 1, PUSH = 2, NOISE = 3 };
+enum class Stream : uint64_t { OBJECT = 1, PUSH = 2, NOISE = 3, SAMPLE = 4 };
 
 class Random
 {

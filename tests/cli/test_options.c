@@ -19,6 +19,7 @@ static struct {
     uint64_t seed;
     double noise_m;
     char shape;
+    char letters[8]; /* of --add, in order */
 } values;
 
 static const char *take_shape(void *context, const char *text)
@@ -27,6 +28,13 @@ static const char *take_shape(void *context, const char *text)
         return "one letter";
     *(char *)context = text[0];
     return NULL;
+}
+
+static const char *take_letter(void *context, const char *text)
+{
+    (void)context;
+    (void)strncat(values.letters, text, 1);
+    return strcmp(text, "?") != 0 ? NULL : "a letter";
 }
 
 static struct grrl_program program = {.name = "grrl-test",
@@ -55,6 +63,7 @@ static void parse(const char *line)
         grrl_option_u64("seed", "N", "seed (1)", 0, UINT64_MAX, &values.seed),
         grrl_option_number("noise", "MM", "of a point", 0.0, 100.0, 0.001, &values.noise_m),
         grrl_option_call("shape", "X", "a letter", take_shape, &values.shape),
+        grrl_option_each("add", "X", "a letter", take_letter, &values),
     };
     memset(&values, 0, sizeof values);
     FILE *file = tmpfile();
@@ -144,6 +153,10 @@ static void an_option_is_given_once(void **state)
     refused("--seed 1 --quiet --seed 1", "grrl-test: --seed: given twice\nTry grrl-test --help\n");
     refused("--quiet --quie", "grrl-test: --quiet: given twice\nTry grrl-test --help\n");
     refused("--log a --lo=b", "grrl-test: --log: given twice\nTry grrl-test --help\n");
+    parse("--add a --quiet --add b"); /* but for those that add up */
+    assert_int_equal(result, GRRL_OPTIONS_RUN);
+    assert_string_equal(values.letters, "ab");
+    refused("--add a --add ?", "grrl-test: --add ?: must be a letter\n");
     parse("--quiet"); /* a new command line begins anew */
     assert_int_equal(result, GRRL_OPTIONS_RUN);
 }
@@ -167,14 +180,14 @@ static void arguments_are_counted(void **state)
     (void)state;
     refused("--quiet extra", "grrl-test: extra: there are no arguments, only options\n"
                              "Try grrl-test --help\n");
-    program.most_arguments = 2;
+    program.max_arguments = 2;
     program.arguments = "two files at most";
     parse("one --quiet -- --two");
     assert_int_equal(result, GRRL_OPTIONS_RUN);
     assert_true(values.quiet);
     assert_int_equal(first, 3); /* of five words */
     refused("one - three --quiet", "grrl-test: three: two files at most\nTry grrl-test --help\n");
-    program.most_arguments = 0;
+    program.max_arguments = 0;
     program.arguments = NULL;
 }
 
@@ -196,6 +209,7 @@ static void help_lists_the_table(void **state)
                                     "  --seed N    seed (1)\n"
                                     "  --noise MM  of a point\n"
                                     "  --shape X   a letter\n"
+                                    "  --add X     a letter\n"
                                     "  --help      print this help\n"
                                     "  --version   print the version\n"
                                     "\n"
@@ -209,20 +223,20 @@ static void help_lists_the_table(void **state)
 static void a_full_table_parses(void **state)
 {
     (void)state;
-    static char names[GRRL_OPTIONS_MOST][16];
-    struct grrl_option rows[GRRL_OPTIONS_MOST];
-    bool flags[GRRL_OPTIONS_MOST] = {false};
-    for (int i = 0; i < GRRL_OPTIONS_MOST; i++) {
+    static char names[GRRL_OPTIONS_MAX][16];
+    struct grrl_option rows[GRRL_OPTIONS_MAX];
+    bool flags[GRRL_OPTIONS_MAX] = {false};
+    for (int i = 0; i < GRRL_OPTIONS_MAX; i++) {
         (void)snprintf(names[i], sizeof names[i], "o%dx", i);
         rows[i] = grrl_option_flag(names[i], "", &flags[i]);
     }
     char last[20];
-    (void)snprintf(last, sizeof last, "--o%dx", GRRL_OPTIONS_MOST - 1);
+    (void)snprintf(last, sizeof last, "--o%dx", GRRL_OPTIONS_MAX - 1);
     char *argv[] = {(char[]){"grrl-test"}, (char[]){"--o0x"}, last, NULL};
-    assert_int_equal(grrl_options_parse(&program, rows, GRRL_OPTIONS_MOST, 3, argv, NULL),
+    assert_int_equal(grrl_options_parse(&program, rows, GRRL_OPTIONS_MAX, 3, argv, NULL),
                      GRRL_OPTIONS_RUN);
-    for (int i = 0; i < GRRL_OPTIONS_MOST; i++)
-        assert_int_equal(flags[i], i == 0 || i == GRRL_OPTIONS_MOST - 1);
+    for (int i = 0; i < GRRL_OPTIONS_MAX; i++)
+        assert_int_equal(flags[i], i == 0 || i == GRRL_OPTIONS_MAX - 1);
 }
 
 int main(void)

@@ -10,6 +10,7 @@
 #include "chooser.hpp"
 #include "clairvoyant.hpp"
 #include "motion.hpp"
+#include "policies.hpp"
 #include "rule.hpp"
 #include "truth.hpp"
 
@@ -63,7 +64,7 @@ void join(grrl_model &model, uint8_t a, uint8_t b, grrl_joint_type type)
 void the_rule_takes_the_longest_along_its_axis_first(void **)
 {
     grrl_model model = row_of({0.1f, 0.3f, 0.2f});
-    std::unique_ptr<Chooser> rule = make_rule();
+    std::unique_ptr<Chooser> rule = make_rule("aps");
     const int expected[] = {0, 180, 90, 270, 45, 225};
     for (int number : {2, 3, 1})
         for (int degrees : expected) {
@@ -77,6 +78,23 @@ void the_rule_takes_the_longest_along_its_axis_first(void **)
     assert_int_equal(rule->choose(model).direction, 0);
     rule->begin_trial();
     assert_int_equal(rule->choose(model).direction, 0);
+}
+
+void the_rule_has_six_orders(void **)
+{
+    grrl_model model = row_of({0.1f});
+    const struct {
+        const char *name;
+        int degrees[GRRL_DIRECTIONS];
+    } cases[] = {
+        {"rule", {0, 180, 90, 270, 45, 225}},     {"rule-asp", {0, 180, 45, 225, 90, 270}},
+        {"rule-pas", {90, 270, 0, 180, 45, 225}}, {"rule-psa", {90, 270, 45, 225, 0, 180}},
+        {"rule-sap", {45, 225, 0, 180, 90, 270}}, {"rule-spa", {45, 225, 90, 270, 0, 180}}};
+    for (const auto &c : cases) {
+        std::unique_ptr<Chooser> rule = find_policy(c.name)->make_chooser(nullptr, 1);
+        for (int degrees : c.degrees)
+            assert_int_equal(grrl_direction_deg[rule->choose(model).direction], degrees);
+    }
 }
 
 void motion_is_expected_where_joints_allow_it(void **)
@@ -189,6 +207,7 @@ int main()
 {
     const CMUnitTest tests[] = {
         cmocka_unit_test(the_rule_takes_the_longest_along_its_axis_first),
+        cmocka_unit_test(the_rule_has_six_orders),
         cmocka_unit_test(motion_is_expected_where_joints_allow_it),
         cmocka_unit_test(motion_repeats_no_push_in_a_structure),
         cmocka_unit_test(joints_are_known_or_wrong_by_the_truth),

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "claims.hpp"
 #include "results.hpp"
 
 extern "C" {
@@ -68,23 +69,61 @@ void ranges_end_with_the_trials(void **)
     std::vector<Range> few = ranges(7);
     assert_int_equal(few.size(), 3);
     assert_int_equal(few[1].last, 7);
+    std::vector<Range> many = ranges(1000);
+    assert_int_equal(many.size(), 10);
+    assert_string_equal(many[7].label.c_str(), "501-1000");
 }
 
 void csv_quotes_what_it_must(void **)
 {
     Plan plan;
     Curve curve;
-    curve.object = "R(l1, l2)";
+    curve.course.text = "R(l1, l2)";
+    curve.course.trials = 3;
     curve.policy = find_policy("paper");
-    curve.pretrain = "RR";
-    curve.pretrain_trials = 5;
-    curve.trials = 3;
+    for (const char *object : {"RR", "P"}) {
+        curve.before.emplace_back();
+        curve.before.back().text = object;
+        curve.before.back().trials = 5;
+    }
     plan.curves.push_back(curve);
-    std::string csv = trials_csv(plan, {two_experiments()}, 2);
-    assert_non_null(std::strstr(csv.c_str(), "\n\"R(l1, l2)\",paper,RR:5,2,2002,3,100,capped,0\n"));
-    std::string summary = summary_csv(plan, {two_experiments()});
+    std::string csv = trials_csv(plan, {two_experiments()}, {2001, 2002});
     assert_non_null(
-        std::strstr(summary.c_str(), "\n\"R(l1, l2)\",paper,RR:5,2,2,2,2,3.000,-9.706,15.706,"));
+        std::strstr(csv.c_str(), "\n\"R(l1, l2)\",paper,\"RR:5, P:5\",2,2002,3,100,capped,0\n"));
+    std::string summary = summary_csv(plan, {two_experiments()});
+    assert_non_null(std::strstr(
+        summary.c_str(), "\n\"R(l1, l2)\",paper,\"RR:5, P:5\",2,2,2,2,3.000,-9.706,15.706,"));
+}
+
+void the_distance_from_the_bound_is_taken_trial_by_trial(void **)
+{
+    std::vector<Experiments> results = {two_experiments(), two_experiments()};
+    for (Trials &trials : results[1])
+        for (TrialRow &row : trials)
+            row.pushes = row.trial;
+    Figure figure;
+    assert_int_equal(shown(figure, results, 0)[1][2].pushes, 100);
+    figure.bound = 1;
+    assert_int_equal(shown(figure, results, 0)[1][2].pushes, 97);
+    assert_near(pushes(shown(figure, results, 0), 1, 2).mean, 1.0); /* 0, 0, 2, 2 */
+}
+
+void a_claim_needs_every_difference(void **)
+{
+    Experiments low(3);
+    Experiments high(3);
+    for (size_t e = 0; e < 3; e++) {
+        TrialRow row;
+        row.trial = 1;
+        row.pushes = static_cast<int>(e);
+        low[e].push_back(row);
+        row.pushes += 5 + static_cast<int>(e % 2);
+        high[e].push_back(row);
+    }
+    assert_string_equal(is_below({low}, {high}, 1, 1).c_str(), "yes");
+    assert_string_equal(is_below({high}, {low}, 1, 1).c_str(), "NO");
+    assert_string_equal(is_below({low}, {high, low}, 1, 1).c_str(), "unclear");
+    assert_string_equal(is_below({low, high}, {low, high}, 1, 1).c_str(), "NO");
 }
 
 void every_policy_has_a_name_of_its_own(void **)
@@ -133,6 +172,8 @@ int main()
         cmocka_unit_test(an_experiment_counts_as_one_number),
         cmocka_unit_test(ranges_end_with_the_trials),
         cmocka_unit_test(csv_quotes_what_it_must),
+        cmocka_unit_test(the_distance_from_the_bound_is_taken_trial_by_trial),
+        cmocka_unit_test(a_claim_needs_every_difference),
         cmocka_unit_test(every_policy_has_a_name_of_its_own),
         cmocka_unit_test(an_ablation_changes_what_it_says),
     };

@@ -232,6 +232,19 @@ static void doors_of_any_size(void **state)
     }
 }
 
+/* A thing that turns about a place far from another is not hinged to it, however sure the turn. */
+static void a_turn_far_from_the_other(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = table();
+    begin(&config, "a_turn_far_from_the_other");
+    add_points(0, 12, -0.335, -0.205, 0.012);
+    add_points(1, 12, 0.005, 0.11, 0.012);
+    perceive(&(struct recording){200, 0.0006, turn_once, NULL, NULL});
+    assert_int_equal(model->n_bodies, 2);
+    assert_int_equal(model->n_joints, 0);
+}
+
 /* Of the link at rest only its ends show: two groups of features that look like two things. */
 static void a_link_at_rest_in_two_groups(void **state)
 {
@@ -423,6 +436,7 @@ int main(void)
         cmocka_unit_test(a_few_frames),
         cmocka_unit_test(a_body_outlives_its_features),
         cmocka_unit_test(doors_of_any_size),
+        cmocka_unit_test(a_turn_far_from_the_other),
         cmocka_unit_test(a_link_at_rest_in_two_groups),
         cmocka_unit_test(a_hinge_before_a_camera_that_zooms),
         cmocka_unit_test(what_comes_nearer_is_one_thing),

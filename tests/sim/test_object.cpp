@@ -2,9 +2,11 @@
 #include "support.hpp"
 
 #include <cmath>
+#include <set>
 
 #include "kinematics.hpp"
 #include "object_file.hpp"
+#include "object_stream.hpp"
 #include "placement.hpp"
 #include "supervisor.hpp"
 
@@ -209,6 +211,95 @@ void bad_files_are_told_by_line_and_column(void **)
     }
 }
 
+void scaled_objects_move_like_their_larger_twins(void **)
+{
+    ObjectScale half;
+    half.length = 0.5;
+    half.similar = true;
+    ObjectSpec twin = *object_from_text("RP").value;
+    ObjectSpec object = *object_from_text("RP", half).value;
+    assert_true(std::abs(object.links[0].half_length_m - 0.5 * twin.links[0].half_length_m) <
+                1e-12);
+    assert_true(std::abs(object.links[0].mass_kg - 0.5 * twin.links[0].mass_kg) < 1e-12);
+    assert_true(std::abs(object.joints[0].friction - 0.25 * twin.joints[0].friction) < 1e-12);
+    assert_true(std::abs(object.joints[1].friction - 0.5 * twin.joints[1].friction) < 1e-12);
+    assert_true(std::abs(object.joints[0].upper - twin.joints[0].upper) < 1e-12); /* an angle */
+    assert_true(std::abs(object.joints[1].upper - 0.5 * twin.joints[1].upper) < 1e-12);
+    half.similar = false;
+    object = *object_from_text("RP", half).value;
+    assert_true(object.joints[0].friction == twin.joints[0].friction);
+    assert_contains(object_from_text(std::string(GRRL_OBJECTS) + "/scissors.grrl", half).error,
+                    "cannot follow links of another length");
+    ObjectScale rich;
+    rich.features = 2.0;
+    rich.friction = 3.0;
+    object = *object_from_text("RP", rich).value;
+    assert_int_equal(object.links[1].features_max, 2 * twin.links[1].features_max);
+    assert_true(object.joints[1].friction == 3.0 * twin.joints[1].friction);
+}
+
+void a_stream_draws_what_it_says(void **)
+{
+    ObjectStream stream = *stream_from_text("links 3..5, 8\nrevolute 1\nbranches 0.5\n"
+                                            "objects 1, 2\nloops 0.3 # some\nsize 0.5, 1\n"
+                                            "length 0.9..1.1\n",
+                                            "f")
+                               .value;
+    int loops = 0;
+    int pairs = 0;
+    int small = 0;
+    std::set<std::string> terms;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        ObjectSpec object = stream.sample(seed);
+        size_t links = object.links.size();
+        size_t trees = links - spanning_forest(object).tree.size();
+        assert_in_range(links, 3, 16);
+        assert_true(trees == 1 || trees == 2);
+        assert_int_equal(object.truth.n, links);
+        for (const JointSpec &joint : object.joints)
+            assert_int_equal(joint.type, GRRL_REVOLUTE);
+        double length = object.links[0].half_length_m / LinkSpec{}.half_length_m;
+        assert_true((length > 0.44 && length < 0.56) || (length > 0.89 && length < 1.11) ||
+                    object.joints.size() > 2); /* a hub makes room for its branches */
+        loops += object.joints.size() > links - trees ? 1 : 0;
+        pairs += trees == 2 ? 1 : 0;
+        small += length < 0.56 ? 1 : 0;
+        std::string term = term_of(object);
+        Result<ObjectSpec> again = object_from_term(term);
+        assert_true(static_cast<bool>(again));
+        assert_true(Supervisor(object.truth).judge(again.value->truth).correct);
+        assert_string_equal(term_of(stream.sample(seed)).c_str(), term.c_str());
+        terms.insert(term);
+    }
+    assert_in_range(loops, 20, 120);
+    assert_in_range(pairs, 70, 130);
+    assert_in_range(small, 60, 130);
+    assert_true(terms.size() > 50);
+}
+
+void bad_streams_are_told_by_line_and_column(void **)
+{
+    const struct {
+        const char *text;
+        const char *part;
+    } cases[] = {
+        {"link 3\n", "f:1:1: unknown statement 'link'; expected one of links, objects, revolute"},
+        {"\nlinks 3..x\n", "f:2:10: 'x' must be a whole number from 2 to 10, or a range"},
+        {"links 2.5\n", "f:1:7: '2.5' must be a whole number"},
+        {"links 3,\n", "f:1:9: '' must be a whole number"},
+        {"links\n", "f:1:6: '' must be a whole number"},
+        {"size nan\n", "f:1:6: 'nan' must be a number from 0.4 to 2"},
+        {"size 1, 1.2..0.8\n", "a range starts with its lower end"},
+        {"size 1\n  size 1\n", "f:2:3: a second 'size'; separate several values by commas"},
+        {"links 9\nobjects 1, 2\n", "f: up to 18 links on the table; this build holds at most 16"},
+    };
+    for (const auto &c : cases) {
+        Result<ObjectStream> stream = stream_from_text(c.text, "f");
+        assert_false(static_cast<bool>(stream));
+        assert_contains(stream.error, c.part);
+    }
+}
+
 } // namespace
 
 int main()
@@ -224,6 +315,9 @@ int main()
         cmocka_unit_test(terms_over_capacity_are_refused),
         cmocka_unit_test(shipped_files_are_objects),
         cmocka_unit_test(bad_files_are_told_by_line_and_column),
+        cmocka_unit_test(scaled_objects_move_like_their_larger_twins),
+        cmocka_unit_test(a_stream_draws_what_it_says),
+        cmocka_unit_test(bad_streams_are_told_by_line_and_column),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

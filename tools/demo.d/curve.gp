@@ -14,8 +14,11 @@ set key outside bottom center horizontal samplen 2 width 2 tc rgb "#222222"
 set yrange [0:*]
 set style fill transparent solid 0.18 noborder
 plot data using 1:8:9 with filledcurves lc rgb "#d1661b" notitle, \
+     data using 1:12:13 with filledcurves lc rgb "#8c8c8c" notitle, \
      data using 1:4:5 with filledcurves lc rgb "#1666a8" notitle, \
      data using 1:6 with points pt 7 ps 0.45 lc rgb "#d1661b" notitle, \
+     data using 1:10 with points pt 7 ps 0.45 lc rgb "#8c8c8c" notitle, \
      data using 1:2 with points pt 7 ps 0.45 lc rgb "#1666a8" notitle, \
      data using 1:7 with lines lw 2.5 lc rgb "#d1661b" title "random", \
+     data using 1:11 with lines lw 2.5 lc rgb "#8c8c8c" title "learned as in the paper", \
      data using 1:3 with lines lw 2.5 lc rgb "#1666a8" title "learned"

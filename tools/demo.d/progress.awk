@@ -25,8 +25,8 @@ END {
         s = int(elapsed * (total * trials - done) / done + 0.5)
         left = sprintf("%d:%02d", int(s / 60), s % 60)
     }
-    line = sprintf("%d of %d runs, %s left | mean pushes: learned %s, random %s", finished, total,
-                   left, mean("learn"), mean("random"))
+    line = sprintf("%d of %d runs, %s left | mean pushes: learned %s, paper %s, random %s",
+                   finished, total, left, mean("learn"), mean("paper"), mean("random"))
     count = split(running, names, " ")
     for (i = 1; i <= count; i++)
         if (trial[names[i]] > 0)

@@ -50,7 +50,7 @@ function cell(policy, from, to) {
     return half < 0 ? sprintf("%6.1f        ", mean) : sprintf("%6.1f ± %-5.1f", mean, half)
 }
 
-function row(from, to, label,    learned, random, learned_mean) {
+function row(from, to, label,    learned, paper, random, learned_mean) {
     if (from > trials || from < 1)
         return
     if (to > trials)
@@ -59,8 +59,10 @@ function row(from, to, label,    learned, random, learned_mean) {
         label = "trials " (from == to ? from : from "-" to)
     learned = cell("learn", from, to)
     learned_mean = mean
+    paper = cell("paper", from, to)
     random = cell("random", from, to)
-    printf "  %-14s %s    %s    %8.0f%%\n", label, learned, random, 100 * (1 - learned_mean / mean)
+    printf "  %-14s %s    %s    %s    %8.0f%%\n", label, learned, paper, random,
+           100 * (1 - learned_mean / mean)
 }
 
 function outcomes(policy, label) {
@@ -68,14 +70,14 @@ function outcomes(policy, label) {
            label, seeds * trials - capped[policy], seeds * trials, capped[policy]
 }
 
-# Columns: trial, then for learned and random: mean of the trial; mean, low and high of five trials.
+# Columns: trial, then for learned, random and paper: mean of the trial; mean, low and high of five trials.
 function write_curve(    k, from, to, p, line, names) {
-    split("learn random", names, " ")
+    split("learn random paper", names, " ")
     for (k = 1; k <= trials; k++) {
         from = k > 2 ? k - 2 : 1
         to = k + 2 <= trials ? k + 2 : trials
         line = k
-        for (p = 1; p <= 2; p++) {
+        for (p = 1; p <= 3; p++) {
             estimate(names[p], k, k)
             line = line "\t" mean
             estimate(names[p], from, to)
@@ -92,7 +94,8 @@ END {
         printf "mean over %d seeds ± 95%% confidence (t distribution)\n\n", seeds
     else
         printf "one seed: no confidence intervals\n\n"
-    printf "  %-14s %14s    %14s    %s\n", "", "learned    ", "random     ", "fewer pushes"
+    printf "  %-14s %14s    %14s    %14s    %s\n", "", "learned    ", "paper      ", "random     ",
+           "fewer pushes"
     row(1, 5)
     row(6, 10)
     row(11, 20)
@@ -102,6 +105,7 @@ END {
     row(1, trials, "all")
     print ""
     outcomes("learn", "learned:")
+    outcomes("paper", "paper:")
     outcomes("random", "random:")
     write_curve()
 }
