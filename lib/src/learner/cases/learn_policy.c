@@ -75,6 +75,16 @@ static bool is_known(const struct grrl_estimate *estimate)
     return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
 }
 
+/* Whether pushes already made may be chosen: where the configuration says so, or none is left. */
+static bool may_repeat(const struct grrl_learn_policy *policy)
+{
+    for (uint8_t link = 0; link < policy->contexts.n_links; link++)
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
+            if (policy->contexts.action[link][direction].part[GRRL_CONTEXT_TRIED] == 0)
+                return policy->config.repeats != 0;
+    return true;
+}
+
 void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_random *random,
                        struct grrl_choice *choice)
 {
@@ -84,12 +94,15 @@ void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_ran
     uint32_t ties = 0;
     unsigned met = 0;
     float best = 0.0f;
+    bool repeat = may_repeat(policy);
     for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
         for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
+            const struct grrl_context *context = &policy->contexts.action[link][direction];
             struct grrl_estimate estimate;
-            grrl_cases_estimate(&policy->cases, &policy->config,
-                                &policy->contexts.action[link][direction], &estimate);
+            grrl_cases_estimate(&policy->cases, &policy->config, context, &estimate);
             met += is_known(&estimate);
+            if (!repeat && context->part[GRRL_CONTEXT_TRIED] > 0)
+                continue;
             if (ties == 0 || estimate.upper > best) {
                 ties = 0;
                 best = estimate.upper;
