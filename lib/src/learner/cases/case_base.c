@@ -212,21 +212,21 @@ static void update_log_odds(struct grrl_case_base *base, const struct grrl_case_
 /* Finds the case with exactly this context, or adds one without rewards. */
 static uint32_t find_or_add(struct grrl_case_base *base, uint32_t key)
 {
-    uint32_t room = 0;
+    uint32_t oldest = 0;
     for (uint32_t i = 0; i < base->n; i++) {
         if (base->cases[i].key == key)
             return i;
-        if (grrl_case_makes_room(&base->cases[i], &base->cases[room]))
-            room = i;
+        if (base->cases[i].used_at < base->cases[oldest].used_at)
+            oldest = i;
     }
     if (base->n < base->capacity) {
-        room = base->n++;
+        oldest = base->n++;
         base->high_water = base->n > base->high_water ? base->n : base->high_water;
     } else {
         base->evictions++;
     }
-    base->cases[room] = (struct grrl_case){.key = key};
-    return room;
+    base->cases[oldest] = (struct grrl_case){.key = key};
+    return oldest;
 }
 
 /* Adds a reward to those ever met. A full case halves its counts, so that later rewards count. */

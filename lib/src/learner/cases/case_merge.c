@@ -47,14 +47,13 @@ static void sort(struct grrl_case_base *base)
     }
 }
 
-static void drop_one(struct grrl_case_base *base)
+/* Drops the first cases, so that `most` are left. */
+static void drop_oldest(struct grrl_case_base *base, uint32_t most)
 {
-    uint32_t room = 0;
-    for (uint32_t i = 1; i < base->n; i++)
-        if (grrl_case_makes_room(&base->cases[i], &base->cases[room]))
-            room = i;
-    for (base->n--; room < base->n; room++)
-        base->cases[room] = base->cases[room + 1];
+    uint32_t excess = base->n > most ? base->n - most : 0;
+    base->n -= excess;
+    for (uint32_t i = 0; i < base->n && excess > 0; i++)
+        base->cases[i] = base->cases[i + excess];
 }
 
 /* Moves the end of a life to `clock`. */
@@ -84,8 +83,7 @@ enum grrl_status grrl_cases_merge(struct grrl_case_base *base, struct grrl_case_
             base->cases[base->n++] = from->cases[i];
     }
     sort(base);
-    while (base->n > most)
-        drop_one(base);
+    drop_oldest(base, most);
     for (uint32_t i = 1; i < base->n; i++) /* no two cases were met at the same time */
         if (base->cases[i].used_at <= base->cases[i - 1].used_at)
             base->cases[i].used_at = base->cases[i - 1].used_at + 1;

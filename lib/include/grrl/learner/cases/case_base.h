@@ -19,8 +19,8 @@
  * rewards, and the mean of these over all cases, with a narrower kernel, is the prior of the object
  * at hand. Its weight is limited, so a few rewards of this object outweigh it.
  *
- * The memory is fixed and belongs to the caller. When it is full, a case makes room: the one met
- * least recently, where each reward it holds counts as a number of later pushes.
+ * The memory is fixed and belongs to the caller. When it is full, the case that was met least
+ * recently is evicted.
  *
  * Order of calls: grrl_cases_init; grrl_cases_begin_trial for each trial; then grrl_cases_estimate
  * as often as needed and grrl_cases_learn once for each push.
@@ -134,7 +134,7 @@ GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
 /*
  * Adds the cases of another base, so that two lives become one; which is added to which makes no
  * difference. Rewards in the same context are pooled, and both lives end now: a case is as old as
- * in the life that met it last. Keeps at most `most` cases; others make room as in a full memory.
+ * in the life that met it last. Keeps the `most` cases that were met last.
  * Both bases start a new trial. GRRL_ERR_FULL: the first has no room for the cases of both. Cost:
  * quadratic in cases.
  */
@@ -142,15 +142,6 @@ GRRL_MUST_USE enum grrl_status grrl_cases_merge(struct grrl_case_base *base,
                                                 struct grrl_case_base *from,
                                                 const struct grrl_case_config *config,
                                                 uint32_t most);
-
-/* Whether case a makes room before case b: the one met least recently, where each reward that it
- * holds counts as 300 later pushes. */
-static inline bool grrl_case_makes_room(const struct grrl_case *a, const struct grrl_case *b)
-{
-    enum { PUSHES_A_REWARD = 300 };
-    return (uint64_t)a->used_at + (uint64_t)PUSHES_A_REWARD * a->n_all <
-           (uint64_t)b->used_at + (uint64_t)PUSHES_A_REWARD * b->n_all;
-}
 
 /* Like grrl_experience_load_torn. */
 GRRL_MUST_USE enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
