@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "base/range.h"
 #include "grrl/base/geometry.h"
 
 /* Keeps likelihoods away from zero: no outcome is impossible. */
@@ -11,37 +10,6 @@
 
 /* Limits the doubt: a learner in deep doubt trusts this trial's few rewards alone. */
 #define MIN_LOG_ODDS (-1.0f)
-
-void grrl_case_config_default(struct grrl_case_config *config)
-{
-    *config = (struct grrl_case_config){.prior = 0.5f,
-                                        .prior_weight = 1.0f,
-                                        .mismatch = 0.2f,
-                                        .general = 3.0f,
-                                        .general_mismatch = 0.1f,
-                                        .bound = 0.4f,
-                                        .confidence = 0.5f,
-                                        .present = 3.0f,
-                                        .memory = 5,
-                                        .parts = GRRL_ALL_CONTEXT_PARTS};
-}
-
-enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, const char **field)
-{
-    const struct grrl_range_check checks[] = {
-        {"prior", grrl_is_within(config->prior, -GRRL_MAX_REWARD, GRRL_MAX_REWARD)},
-        {"prior_weight", grrl_is_within(config->prior_weight, 0.001f, GRRL_MAX_REWARD)},
-        {"mismatch", grrl_is_within(config->mismatch, 0.0f, 1.0f)},
-        {"general", grrl_is_within(config->general, 0.0f, GRRL_MAX_REWARD)},
-        {"general_mismatch", grrl_is_within(config->general_mismatch, 0.0f, 1.0f)},
-        {"bound", grrl_is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
-        {"confidence", grrl_is_within(config->confidence, 0.0f, GRRL_MAX_REWARD)},
-        {"present", grrl_is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
-        {"memory", config->memory >= 1},
-        {"parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
-    };
-    return grrl_range_first(checks, sizeof checks / sizeof checks[0], field);
-}
 
 void grrl_cases_init(struct grrl_case_base *base, struct grrl_case *cases, uint32_t capacity)
 {
