@@ -83,7 +83,7 @@ struct grrl_agent_config {
     struct grrl_agent_table table;
 
     /* When a run without a supervisor is over; 0: never. */
-    int32_t most_pushes;
+    int32_t max_pushes;
     /* every pair of links is decided with this probability, and three pushes in a row for each
      * link revealed nothing; needs pair */
     float until_sure;
@@ -142,7 +142,6 @@ struct grrl_agent {
     int64_t plant_session_id; /* 0: none yet */
     int64_t plant_heard_us;   /* observing: by the clock of the messages */
     int64_t heard_us;
-    bool lock_step;
     enum grrl_agent_end end;
     grrl_stop_t stop; /* as it came; session_id 0: none, or a malformed one */
     bool rival_seen;  /* and told */
@@ -150,10 +149,11 @@ struct grrl_agent {
     bool blind;       /* nothing could be pushed at the last look, and that was told */
 
     grrl_trial_t trial; /* the newest taken in; revision 0: none */
-    uint8_t stage;
+    uint8_t phase;
     int32_t trial_id; /* of the learner's trial */
     int32_t cmd_seq;  /* the last push commanded (observing: seen) */
     int64_t seq;      /* the newest frame taken in */
+    bool begun;       /* a frame of this trial was */
     bool adopted;     /* the learner knows what push cmd_seq is */
     int rest_frames;  /* since the last motion, for senders that do not tell the phase */
     int32_t rest_ack;

@@ -5,12 +5,12 @@
 #include "agent.h"
 
 /* Where the agent stands in a trial. */
-enum stage {
-    STAGE_NONE,     /* no trial, or not this one: nothing is taken in */
-    STAGE_WATCHING, /* frames of push cmd_seq are taken in until they settle */
-    STAGE_JUDGING,  /* the model after cmd_seq is out, the supervisor's word is awaited */
-    STAGE_CHOOSING, /* judged, but there is no next push yet */
-    STAGE_COMMANDED /* push cmd_seq is out, no frame of it has come yet */
+enum phase {
+    PHASE_NONE,     /* no trial, or not this one: nothing is taken in */
+    PHASE_WATCHING, /* frames of push cmd_seq are taken in until they settle */
+    PHASE_JUDGING,  /* the model after cmd_seq is out, the supervisor's word is awaited */
+    PHASE_CHOOSING, /* judged, but there is no next push yet */
+    PHASE_COMMANDED /* push cmd_seq is out, no frame of it has come yet */
 };
 
 /* agent_trial.c: the course of a trial. */

@@ -18,7 +18,7 @@ enum {
     PATIENCE_US = 2000000,
     OVERTIME_US = 5000000,
     LEAST_HZ = 10,
-    MOST_STRANGE = 10,
+    STRANGE_FRAMES = 10,
     STRANGE_SAMPLE = 64,
     FEW = 4
 };
@@ -114,7 +114,7 @@ static void watch_ids(struct grrl_agent *agent, const grrl_points_t *points)
     memcpy(plant->id, points->id, (size_t)points->n_points * sizeof plant->id[0]);
     memcpy(plant->x, points->x, (size_t)points->n_points * sizeof plant->x[0]);
     memcpy(plant->y, points->y, (size_t)points->n_points * sizeof plant->y[0]);
-    if (plant->strange_n >= MOST_STRANGE && agent_mistake(agent, GRRL_MISTAKE_IDS, 1))
+    if (plant->strange_n >= STRANGE_FRAMES && agent_mistake(agent, GRRL_MISTAKE_IDS, 1))
         agent_note(agent, "the ids change from frame to frame: a feature must keep its id as long "
                           "as it is tracked; an id is no place in a list and never goes to "
                           "another feature");
@@ -159,7 +159,7 @@ static void watch_trial(struct grrl_agent *agent, const grrl_points_t *points, b
 static void watch_rest(struct grrl_agent *agent, const grrl_points_t *points, int64_t now)
 {
     struct grrl_agent_plant *plant = &agent->plant;
-    if (points->phase != GRRL_POINTS_T_REST || agent->stage != STAGE_WATCHING) {
+    if (points->phase != GRRL_POINTS_T_REST || agent->phase != PHASE_WATCHING) {
         plant->rest_us = 0;
         return;
     }
@@ -185,7 +185,7 @@ static void watch_moving(struct grrl_agent *agent, const grrl_points_t *points, 
         points->phase == GRRL_POINTS_T_UNKNOWN && agent->status.state == GRRL_PUSH_STATUS_T_MOVING;
     bool moving = points->phase == GRRL_POINTS_T_PUSHING || by_status;
     int64_t allowed_us = (int64_t)((double)agent->command.timeout * 1e6) + OVERTIME_US;
-    if (moving && agent->stage == STAGE_WATCHING && agent->cmd_seq > 0 &&
+    if (moving && agent->phase == PHASE_WATCHING && agent->cmd_seq > 0 &&
         now - agent->plant.commanded_us >= allowed_us &&
         agent_mistake(agent, GRRL_MISTAKE_MOVING, 1)) {
         (void)snprintf(

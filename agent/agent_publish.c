@@ -155,9 +155,9 @@ static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
     command.session_id = agent->config.session_id;
     command.plant_session_id = agent->plant_session_id;
     command.points_seq = agent->seq;
-    command.trial_id = agent->stage == STAGE_NONE ? agent->trial.trial_id : agent->trial_id;
+    command.trial_id = agent->phase == PHASE_NONE ? agent->trial.trial_id : agent->trial_id;
     command.trial_revision = agent->trial.revision;
-    command.cmd_seq = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq;
+    command.cmd_seq = agent->phase == PHASE_NONE ? 0 : agent->cmd_seq;
     publish(agent, GRRL_CHANNEL_PUSH_COMMAND,
             grrl_wire_encode_push_command(&command, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
 }
@@ -167,7 +167,7 @@ static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
 static bool unjudged_model(const struct grrl_agent *agent)
 {
     return agent->trial_id == 0 &&
-           (agent->stage == STAGE_CHOOSING || agent->stage == STAGE_COMMANDED);
+           (agent->phase == PHASE_CHOOSING || agent->phase == PHASE_COMMANDED);
 }
 
 void agent_answer(struct grrl_agent *agent)
@@ -176,11 +176,11 @@ void agent_answer(struct grrl_agent *agent)
         return;
     int64_t now = agent_now_us(agent);
     agent->answered_us = now;
-    if (agent->stage == STAGE_JUDGING || unjudged_model(agent))
+    if (agent->phase == PHASE_JUDGING || unjudged_model(agent))
         agent_publish_model(agent);
-    if (agent->stage == STAGE_COMMANDED)
+    if (agent->phase == PHASE_COMMANDED)
         publish_decision(agent, now);
-    publish_command(agent, now, agent->stage == STAGE_COMMANDED);
+    publish_command(agent, now, agent->phase == PHASE_COMMANDED);
 }
 
 void agent_publish_status(struct grrl_agent *agent)
@@ -193,8 +193,8 @@ void agent_publish_status(struct grrl_agent *agent)
         .utime = agent_now_us(agent),
         .session_id = agent->config.session_id,
         .plant_session_id = agent->plant_session_id,
-        .trial_id = agent->stage == STAGE_NONE ? 0 : agent->trial_id,
-        .pushes = agent->stage == STAGE_NONE ? 0 : agent->cmd_seq,
+        .trial_id = agent->phase == PHASE_NONE ? 0 : agent->trial_id,
+        .pushes = agent->phase == PHASE_NONE ? 0 : agent->cmd_seq,
         .entries = (int32_t)usage.n,
         .capacity = (int32_t)usage.capacity,
         .evictions = (int32_t)(usage.evictions & INT32_MAX),

@@ -18,10 +18,11 @@ static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
     agent->trial_id = trial_id;
     agent->cmd_seq = 0;
     agent->adopted = false;
+    agent->begun = false;
     agent->rest_frames = 0;
     agent->rest_ack = 0;
     agent->in_vain = 0;
-    agent->stage = STAGE_WATCHING;
+    agent->phase = PHASE_WATCHING;
     memset(&agent->status, 0, sizeof agent->status);
     memset(&agent->decision, 0, sizeof agent->decision);
     memset(&agent->update, 0, sizeof agent->update);
@@ -30,9 +31,9 @@ static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
 
 void agent_abandon(struct grrl_agent *agent)
 {
-    if (agent->stage != STAGE_NONE)
+    if (agent->phase != PHASE_NONE)
         grrl_learner_abandon_trial(&agent->learner);
-    agent->stage = STAGE_NONE;
+    agent->phase = PHASE_NONE;
 }
 
 static void learn(struct grrl_agent *agent, bool ended)
@@ -52,7 +53,7 @@ static void next_push(struct grrl_agent *agent)
     agent->cmd_seq++;
     agent->plant.commanded_us = agent_now_us(agent);
     agent->adopted = true;
-    agent->stage = STAGE_COMMANDED;
+    agent->phase = PHASE_COMMANDED;
 }
 
 /*
@@ -90,7 +91,7 @@ static void tell_blind(struct grrl_agent *agent, enum grrl_status status)
 static void choose(struct grrl_agent *agent)
 {
     struct grrl_decision decision;
-    agent->stage = STAGE_CHOOSING;
+    agent->phase = PHASE_CHOOSING;
     if (agent->config.observe) {
         if (adopt(agent, agent->cmd_seq + 1))
             next_push(agent);
@@ -138,7 +139,7 @@ static enum grrl_agent_end end_alone(const struct grrl_agent *agent)
     if (config->until_sure > 0.0f && agent->in_vain >= VAIN_PER_LINK * n &&
         grrl_agent_sureness(agent, &a, &b) >= config->until_sure)
         return GRRL_AGENT_SURE;
-    if (config->most_pushes > 0 && agent->cmd_seq >= config->most_pushes)
+    if (config->max_pushes > 0 && agent->cmd_seq >= config->max_pushes)
         return GRRL_AGENT_PUSHES_DONE;
     return GRRL_AGENT_GOES_ON;
 }
@@ -160,7 +161,7 @@ static void judge_alone(struct grrl_agent *agent)
 
 static void judge_if_told(struct grrl_agent *agent)
 {
-    if (agent->stage != STAGE_JUDGING)
+    if (agent->phase != PHASE_JUDGING)
         return;
     if (agent->trial_id == 0)
         judge_alone(agent);
@@ -171,7 +172,7 @@ static void judge_if_told(struct grrl_agent *agent)
 static void tell_supervised(struct grrl_agent *agent)
 {
     const struct grrl_agent_config *config = &agent->config;
-    if (!agent->supervised && (config->most_pushes > 0 || config->until_sure > 0.0f))
+    if (!agent->supervised && (config->max_pushes > 0 || config->until_sure > 0.0f))
         agent_note(agent, "a supervisor ends the trials here: --pushes and --until-sure are for "
                           "runs without one and do nothing");
     agent->supervised = true;
@@ -186,7 +187,7 @@ void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
         return;
     }
     agent->trial = *trial;
-    bool same = agent->stage != STAGE_NONE && trial->trial_id == agent->trial_id;
+    bool same = agent->phase != PHASE_NONE && trial->trial_id == agent->trial_id;
     bool running = trial->phase == GRRL_TRIAL_T_RUNNING;
     if (!same) {
         agent_abandon(agent);
@@ -207,7 +208,7 @@ void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
 
 void agent_meet_rival(struct grrl_agent *agent)
 {
-    bool alone = agent->stage != STAGE_NONE && agent->trial_id == 0;
+    bool alone = agent->phase != PHASE_NONE && agent->trial_id == 0;
     if (!alone)
         return; /* with a supervisor, the frames tell whose pushes they show */
     agent_abandon(agent);
@@ -230,16 +231,16 @@ static bool shows_rival(struct grrl_agent *agent, const grrl_points_t *points)
 
 void agent_take_status(struct grrl_agent *agent, const grrl_push_status_t *status)
 {
-    if (agent->stage != STAGE_NONE && status->trial_id == agent->trial_id)
+    if (agent->phase != PHASE_NONE && status->trial_id == agent->trial_id)
         agent->status = *status;
 }
 
 void agent_take_decision(struct grrl_agent *agent, const grrl_decision_t *decision)
 {
     agent->decision = *decision;
-    if (agent->stage == STAGE_CHOOSING && adopt(agent, agent->cmd_seq + 1))
+    if (agent->phase == PHASE_CHOOSING && adopt(agent, agent->cmd_seq + 1))
         next_push(agent);
-    else if (agent->stage == STAGE_WATCHING && agent->cmd_seq > 0 && !agent->adopted)
+    else if (agent->phase == PHASE_WATCHING && agent->cmd_seq > 0 && !agent->adopted)
         agent->adopted = adopt(agent, agent->cmd_seq);
 }
 
@@ -268,19 +269,19 @@ static int8_t phase_of(struct grrl_agent *agent, const grrl_points_t *points, in
  */
 static void catch_up(struct grrl_agent *agent, int32_t ack)
 {
-    if (ack != agent->cmd_seq + 1 || agent->stage == STAGE_WATCHING) {
+    if (ack != agent->cmd_seq + 1 || agent->phase == PHASE_WATCHING) {
         agent_note(agent, "frames are missing, the trial is not learned any further");
         agent_abandon(agent);
         return;
     }
-    if (agent->stage == STAGE_JUDGING) {
+    if (agent->phase == PHASE_JUDGING) {
         learn(agent, false);
         choose(agent);
     }
-    if (agent->stage == STAGE_CHOOSING) {
+    if (agent->phase == PHASE_CHOOSING) {
         agent->cmd_seq = ack;
         agent->adopted = false;
-        agent->stage = STAGE_COMMANDED;
+        agent->phase = PHASE_COMMANDED;
     }
 }
 
@@ -292,7 +293,7 @@ static void settled(struct grrl_agent *agent)
         tell_blind(agent, status);
     agent_make_model(agent);
     agent_event(agent, GRRL_AGENT_PERCEIVED);
-    agent->stage = STAGE_JUDGING;
+    agent->phase = PHASE_JUDGING;
     judge_if_told(agent);
 }
 
@@ -302,12 +303,12 @@ static void watch(struct grrl_agent *agent, grrl_points_t *points)
     int8_t phase = phase_of(agent, points, &ack);
     if (agent->config.observe && ack > agent->cmd_seq)
         catch_up(agent, ack);
-    if (agent->stage == STAGE_COMMANDED && ack == agent->cmd_seq)
-        agent->stage = STAGE_WATCHING;
-    bool idle = agent->stage == STAGE_CHOOSING && !agent->config.observe;
+    if (agent->phase == PHASE_COMMANDED && ack == agent->cmd_seq)
+        agent->phase = PHASE_WATCHING;
+    bool idle = agent->phase == PHASE_CHOOSING && !agent->config.observe;
     if (idle && phase == GRRL_POINTS_T_SETTLED)
-        agent->stage = STAGE_WATCHING; /* nothing was seen that could be pushed: look again */
-    if (agent->stage != STAGE_WATCHING || ack != agent->cmd_seq ||
+        agent->phase = PHASE_WATCHING; /* nothing was seen that could be pushed: look again */
+    if (agent->phase != PHASE_WATCHING || ack != agent->cmd_seq ||
         !agent_admit_frame(agent, points))
         return;
     struct grrl_frame frame = {(uint32_t)points->n_points, points->id, points->x, points->y};
@@ -316,32 +317,51 @@ static void watch(struct grrl_agent *agent, grrl_points_t *points)
         settled(agent);
 }
 
+/* In lock-step a lost frame is sent again, with those behind it: none is taken before. The first of
+ * a trial comes alone. */
+static bool is_early(const struct grrl_agent *agent, const grrl_points_t *points)
+{
+    if (points->mode == GRRL_POINTS_T_REAL_TIME || agent->config.observe)
+        return false;
+    return agent->begun ? points->seq > agent->seq + 1 : points->mode == GRRL_POINTS_T_MORE;
+}
+
+/* Takes in a new frame, or not. */
+static void take_new(struct grrl_agent *agent, grrl_points_t *points)
+{
+    agent->counts.lost += agent->seq > 0 ? points->seq - agent->seq - 1 : 0;
+    agent->seq = points->seq;
+    agent->begun = true;
+    watch(agent, points);
+}
+
 void agent_take_frame(struct grrl_agent *agent, grrl_points_t *points)
 {
     bool over = agent->end != GRRL_AGENT_GOES_ON && agent->end != GRRL_AGENT_TRIALS_DONE;
     if (over || shows_rival(agent, points))
         return;
-    if (points->trial_id == 0 && agent->stage == STAGE_NONE && agent->trial.revision == 0)
+    if (points->trial_id == 0 && agent->phase == PHASE_NONE && agent->trial.revision == 0)
         begin_trial(agent, 0);
-    bool ours = agent->stage != STAGE_NONE && points->trial_id == agent->trial_id;
+    bool ours = agent->phase != PHASE_NONE && points->trial_id == agent->trial_id;
     agent_watch_frame(agent, points, ours);
     if (!ours)
         return; /* the word about this trial has not come yet; it is repeated */
-    agent->lock_step = points->mode == GRRL_POINTS_T_LOCK_STEP;
-    int before = agent->stage;
+    if (is_early(agent, points))
+        return;
+    int before = agent->phase;
     if (points->seq <= agent->seq) {
         agent->counts.repeated++;
         if (points->seq < agent->seq)
             return;
     } else {
-        agent->counts.lost += agent->seq > 0 ? points->seq - agent->seq - 1 : 0;
-        agent->seq = points->seq;
-        watch(agent, points);
+        take_new(agent, points);
     }
-    bool waits = agent->stage == STAGE_JUDGING || agent->stage == STAGE_COMMANDED;
+    if (points->mode == GRRL_POINTS_T_MORE)
+        return;
+    bool waits = agent->phase == PHASE_JUDGING || agent->phase == PHASE_COMMANDED;
     bool due = waits && agent_now_us(agent) - agent->answered_us >= RESEND_US;
-    if (before == STAGE_COMMANDED && agent->stage == STAGE_COMMANDED && due)
+    if (before == PHASE_COMMANDED && agent->phase == PHASE_COMMANDED && due)
         agent_watch_resend(agent);
-    if (agent->lock_step || agent->stage != before || due)
+    if (points->mode == GRRL_POINTS_T_LOCK_STEP || agent->phase != before || due)
         agent_answer(agent);
 }

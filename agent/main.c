@@ -179,7 +179,7 @@ static int run_agent(struct run *run)
         .session_id = grrl_process_random_session(),
         .observe = run->options.observe,
         .table = run->options.table,
-        .most_pushes = run->options.pushes,
+        .max_pushes = run->options.pushes,
         .until_sure = run->options.until_sure,
         .pair = grrl_perception_pair,
         .ground = grrl_grounding_push,

@@ -4,18 +4,17 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_PARAMETERS = 32, N_LIMITS = 6, HELP_BYTES = 160 };
+enum { MAX_PARAMETERS = 32, N_LIMITS = 6, HELP_BYTES = 160 };
 
 static const struct grrl_program program = {
     .name = "grrl-agent",
     .usage = "grrl-agent [OPTION]...",
     .intro = "Learns to find out how articulated objects move by pushing them.\n"
              "Waits for feature points on LCM; grrl-sim sends some.\n",
-    .outro =
-        "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
-        "Exit status: 0 all trials done, sure (--until-sure), all --pushes done, log read or\n"
-        "stopped by a signal; 1 trouble, or --pushes done and not sure; 2 wrong command line;\n"
-        "3 stopped by GRRL_STOP.\n",
+    .outro = "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
+             "Exit status: 0 all trials done, sure (--until-sure), all --pushes done, log read or\n"
+             "stopped by a signal; 1 failed, or --pushes done and not sure; 2 wrong command line;\n"
+             "3 stopped by GRRL_STOP.\n",
 };
 
 /* A policy's configuration, whatever its type. */
@@ -61,7 +60,7 @@ static size_t add_parameters(struct given *given, struct grrl_option *rows)
         union configuration config;
         if ((*type)->config_default != NULL)
             (*type)->config_default(config.bytes);
-        for (size_t i = 0; i < (*type)->n_parameters && n < MOST_PARAMETERS; i++, n++) {
+        for (size_t i = 0; i < (*type)->n_parameters && n < MAX_PARAMETERS; i++, n++) {
             const struct grrl_parameter *parameter = &(*type)->parameters[i];
             given[n] = (struct given){.policy = *type, .parameter = parameter};
             (void)snprintf(given[n].help, HELP_BYTES, "%s: %s, %s (%g)", (*type)->name,
@@ -223,9 +222,9 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                                                   struct grrl_agent_options *options)
 {
     char policies[4 * HELP_BYTES];
-    struct given given[MOST_PARAMETERS];
+    struct given given[MAX_PARAMETERS];
     struct limits limits = {0.0, 0.0, 0.0, 0.0};
-    struct grrl_option rows[GRRL_OPTIONS_MOST];
+    struct grrl_option rows[GRRL_OPTIONS_MAX];
     memset(options, 0, sizeof *options);
     grrl_learner_config_default(&options->learner);
     options->experiences = 1000;
@@ -255,7 +254,7 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                          &options->explain),
     };
     enum { OWN = sizeof own / sizeof own[0] };
-    _Static_assert((int)OWN + (int)N_LIMITS + (int)MOST_PARAMETERS <= (int)GRRL_OPTIONS_MOST,
+    _Static_assert((int)OWN + (int)N_LIMITS + (int)MAX_PARAMETERS <= (int)GRRL_OPTIONS_MAX,
                    "all rows fit");
     memcpy(rows, own, sizeof own);
     size_t fixed = OWN + add_limits(&limits, options, rows + OWN);

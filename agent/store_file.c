@@ -9,7 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { PATH_BYTES = 4096, BUFFER_BYTES = 4096, MOST_ASIDE = 99 };
+enum { PATH_BYTES = 4096, BUFFER_BYTES = 4096, MAX_ASIDE = 99 };
 
 /* --- the system's calls ----------------------------------------------------------------------- */
 
@@ -237,7 +237,7 @@ static const char *advice(enum grrl_status status)
 /* Finds a name that nothing has, by creating an empty file of it. */
 static bool reserve_name(const struct grrl_file_calls *calls, const char *path, char *aside)
 {
-    for (int i = 1; i <= MOST_ASIDE; i++) {
+    for (int i = 1; i <= MAX_ASIDE; i++) {
         int length = i == 1 ? snprintf(aside, PATH_BYTES, "%s.damaged", path)
                             : snprintf(aside, PATH_BYTES, "%s.damaged.%d", path, i);
         if (length < 0 || length >= PATH_BYTES) {

@@ -1,22 +1,42 @@
 /* grrl-bench: the speed of matching and retrieval, compared with other programs. */
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bench.h"
 #include "cli/options.h"
 
 static const struct grrl_program program = {
     .name = "grrl-bench",
-    .usage = "grrl-bench match|retrieve|evict|perceive [OPTION]...",
+    .usage = "grrl-bench match|retrieve|evict|perceive|push [OPTION]...",
     .intro = "\n"
              "match     nanoseconds per query for pairs of structures of 4 to 32 links: the "
              "library with\n"
              "          and without stored plans, and the peers it was built with\n"
              "retrieve  nanoseconds per query among 1000 and 100000 stored states\n"
              "evict     the share of updates whose experience a full store still has\n"
-             "perceive  milliseconds of perception by links, features and keyframes\n",
-    .most_arguments = 1,
+             "perceive  milliseconds of perception by links, features and keyframes\n"
+             "push      what a push of RPRPRPR costs with learn, in instructions if valgrind is\n"
+             "          installed or the processor counts them, and each part next to raw Box2D\n",
+    .max_arguments = 1,
     .arguments = "give only one measurement",
 };
+
+/* The run of a push links the library with its usual capacities, so it is a program of its own,
+ * beside this one. Returns only on failure. */
+static int run_push(bool json)
+{
+    char path[4096];
+    const char name[] = "-push";
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - sizeof name);
+    if (n > 0) {
+        memcpy(path + n, name, sizeof name);
+        (void)execl(path, path, json ? "json" : (char *)NULL, (char *)NULL);
+        (void)fprintf(stderr, "grrl-bench: cannot run %s: build the target grrl-bench-push\n",
+                      path);
+    }
+    return 1;
+}
 
 int main(int argc, char **argv)
 {
@@ -41,5 +61,7 @@ int main(int argc, char **argv)
         return bench_evict(json);
     if (strcmp(command, "perceive") == 0)
         return bench_perceive(json);
-    return grrl_options_wrong(&program, "give one of match, retrieve, evict or perceive");
+    if (strcmp(command, "push") == 0)
+        return run_push(json);
+    return grrl_options_wrong(&program, "give one of match, retrieve, evict, perceive or push");
 }

@@ -260,9 +260,9 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
                                             const struct grrl_option *options, size_t n, int argc,
                                             char **argv, int *first)
 {
-    struct option table[GRRL_OPTIONS_MOST + 3];
-    bool given[GRRL_OPTIONS_MOST] = {false};
-    assert(n <= GRRL_OPTIONS_MOST);
+    struct option table[GRRL_OPTIONS_MAX + 3];
+    bool given[GRRL_OPTIONS_MAX] = {false};
+    assert(n <= GRRL_OPTIONS_MAX);
     make_getopt_table(options, n, table);
     optind = 0; /* restarts getopt */
     int id;
@@ -283,8 +283,8 @@ enum grrl_options_result grrl_options_parse(const struct grrl_program *program,
             return result;
         given[i] = options[i].kind != GRRL_OPTION_EACH;
     }
-    if (argc - optind > program->most_arguments) {
-        (void)fprintf(stderr, "%s: %s: %s\n", program->name, argv[optind + program->most_arguments],
+    if (argc - optind > program->max_arguments) {
+        (void)fprintf(stderr, "%s: %s: %s\n", program->name, argv[optind + program->max_arguments],
                       program->arguments != NULL ? program->arguments
                                                  : "there are no arguments, only options");
         return try_help(program);

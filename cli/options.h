@@ -21,7 +21,7 @@ extern "C" {
 #endif
 
 /* Maximum number of rows. */
-enum { GRRL_OPTIONS_MOST = 48 };
+enum { GRRL_OPTIONS_MAX = 48 };
 
 /* What main should do next. The last two are exit statuses. */
 enum grrl_options_result { GRRL_OPTIONS_RUN = -1, GRRL_OPTIONS_DONE = 0, GRRL_OPTIONS_BAD = 2 };
@@ -31,7 +31,7 @@ struct grrl_program {
     const char *usage;     /* follows "Usage: " in --help, without the final line break */
     const char *intro;     /* text of --help before and after the options */
     const char *outro;     /* NULL: none */
-    int most_arguments;    /* arguments that are not options; usually 0 */
+    int max_arguments;     /* arguments that are not options; usually 0 */
     const char *arguments; /* the error text for a surplus argument; NULL: there are none */
 };
 

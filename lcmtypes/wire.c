@@ -2,7 +2,6 @@
 #include "wire.h"
 
 #include <float.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,7 +69,7 @@ static const struct field points_fields[] = {
     ONE(P, I32, trial_id, COUNT32),
     ONE(P, I32, ack_cmd_seq, COUNT32),
     ONE(P, I64, agent_session_id, COUNT64),
-    ONE(P, I8, mode, GRRL_POINTS_T_REAL_TIME, GRRL_POINTS_T_LOCK_STEP),
+    ONE(P, I8, mode, GRRL_POINTS_T_REAL_TIME, GRRL_POINTS_T_MORE),
     ONE(P, I8, phase, GRRL_POINTS_T_UNKNOWN, GRRL_POINTS_T_SETTLED),
     ONE(P, I32, n_points, 0, GRRL_WIRE_MAX_POINTS),
     MANY(P, I32, id, n_points, ANY32),
@@ -219,9 +218,9 @@ static const struct field stop_fields[] = {
 };
 #undef S
 
-/* The address of value i of a field. A variable array is a pointer in the struct; memcpy reads it
- * regardless of the pointer's type. */
-static unsigned char *place(const struct field *field, void *message, uint32_t i)
+/* The address of a field's first value. A variable array is a pointer in the struct; memcpy reads
+ * it regardless of the pointer's type. */
+static unsigned char *place(const struct field *field, void *message)
 {
     unsigned char *base = (unsigned char *)message + field->offset;
     if (field->n == 0) {
@@ -229,7 +228,18 @@ static unsigned char *place(const struct field *field, void *message, uint32_t i
         memcpy(&array, base, sizeof array);
         base = array;
     }
-    return base + (size_t)i * kind_bytes[field->kind];
+    return base;
+}
+
+static const unsigned char *place_const(const struct field *field, const void *message)
+{
+    const unsigned char *base = (const unsigned char *)message + field->offset;
+    if (field->n == 0) {
+        const void *array;
+        memcpy(&array, base, sizeof array);
+        base = array;
+    }
+    return base;
 }
 
 static uint32_t count(const struct field *field, const void *message)
@@ -246,6 +256,12 @@ static uint64_t big_endian(const uint8_t *data, unsigned n)
     for (unsigned i = 0; i < n; i++)
         bits = bits << 8 | data[i];
     return bits;
+}
+
+static void put_big_endian(uint64_t bits, unsigned n, uint8_t *data)
+{
+    for (unsigned i = n; i-- > 0; bits >>= 8)
+        data[i] = (uint8_t)bits;
 }
 
 /* Stores a value whose bits are right-aligned. */
@@ -284,15 +300,68 @@ static double load(enum kind kind, const unsigned char *from)
     }
 }
 
-static bool in_range(const struct type *type, const struct field *field, double value,
-                     struct grrl_wire_why *why)
+static bool in_range(const struct field *field, double value)
 {
-    /* Written so that NaN fails. */
-    if (value >= field->range[0] && value <= field->range[1])
-        return true;
+    return value >= field->range[0] && value <= field->range[1]; /* written so that NaN fails */
+}
+
+/* Whether n values are in range. A frame has three arrays of up to 256 values: those in loops that
+ * the compiler turns into vectors, with limits that a float or an int32_t holds exactly. */
+static bool all_in_range(const struct field *field, const unsigned char *values, uint32_t n)
+{
+    unsigned good = 1;
+    if (field->kind == F32) {
+        const float low = (float)field->range[0];
+        const float high = (float)field->range[1];
+        for (uint32_t i = 0; i < n; i++) {
+            float value;
+            memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
+            good &= (unsigned)(value >= low) & (unsigned)(value <= high);
+        }
+    } else if (field->kind == I32) {
+        const int32_t low = (int32_t)field->range[0];
+        const int32_t high = (int32_t)field->range[1];
+        for (uint32_t i = 0; i < n; i++) {
+            int32_t value;
+            memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
+            good &= (unsigned)(value >= low) & (unsigned)(value <= high);
+        }
+    } else {
+        for (uint32_t i = 0; i < n; i++)
+            good &= in_range(
+                field, load((enum kind)field->kind, values + (size_t)i * kind_bytes[field->kind]));
+    }
+    return good != 0;
+}
+
+/* Names the first value that is out of range. */
+static bool refuse(const struct type *type, const struct field *field, const unsigned char *values,
+                   struct grrl_wire_why *why)
+{
+    double value;
+    do {
+        value = load((enum kind)field->kind, values);
+        values += kind_bytes[field->kind];
+    } while (in_range(field, value));
     (void)snprintf(why->text, sizeof why->text, "%s: %s is %.9g, must be %.9g to %.9g", type->name,
                    field->name, value, field->range[0], field->range[1]);
     return false;
+}
+
+/* From the wire's order of bytes to the machine's. */
+static void take(enum kind kind, const uint8_t *bytes, uint32_t n, unsigned char *to)
+{
+    const unsigned width = kind_bytes[kind];
+    if (width == 1) /* there may be a million */
+        memcpy(to, bytes, n);
+    for (uint32_t i = 0; width == 4 && i < n; i++) {
+        const uint8_t *from = bytes + 4 * (size_t)i;
+        uint32_t bits =
+            (uint32_t)from[0] << 24 | (uint32_t)from[1] << 16 | (uint32_t)from[2] << 8 | from[3];
+        memcpy(to + 4 * (size_t)i, &bits, 4);
+    }
+    for (uint32_t i = 0; (width == 2 || width == 8) && i < n; i++)
+        store(kind, big_endian(bytes + (size_t)i * width, width), to + (size_t)i * width);
 }
 
 static bool decode(const struct type *type, const void *data, uint32_t size, void *message,
@@ -314,17 +383,11 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
                            type->name, field->name, (unsigned)size);
             return false;
         }
-        if (field->kind == BYTE) { /* every value is right, and there may be a million */
-            memcpy(place(field, message, 0), bytes + at, n);
-            at += n;
-            continue;
-        }
-        for (uint32_t i = 0; i < n; i++, at += width) {
-            unsigned char *to = place(field, message, i);
-            store((enum kind)field->kind, big_endian(bytes + at, width), to);
-            if (!in_range(type, field, load((enum kind)field->kind, to), why))
-                return false;
-        }
+        unsigned char *to = place(field, message);
+        take((enum kind)field->kind, bytes + at, n, to);
+        at += n * width;
+        if (field->kind != BYTE && !all_in_range(field, to, n)) /* every byte is right */
+            return refuse(type, field, to, why);
     }
     if (at == size)
         return true;
@@ -333,32 +396,56 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
     return false;
 }
 
-/* The same checks, on the sender's side. */
-static bool check(const struct type *type, const void *message, struct grrl_wire_why *why)
+/* The inverse of take. */
+static void put(enum kind kind, const unsigned char *values, uint32_t n, uint8_t *bytes)
 {
-    for (size_t f = 0; f < type->n_fields; f++) {
-        const struct field *field = &type->fields[f];
-        uint32_t n = field->kind == BYTE ? 0 : count(field, message);
-        const unsigned char *base = (const unsigned char *)message + field->offset;
-        if (field->n == 0) {
-            const void *array;
-            memcpy(&array, base, sizeof array);
-            base = array;
-        }
-        for (uint32_t i = 0; i < n; i++) {
-            double value = load((enum kind)field->kind, base + (size_t)i * kind_bytes[field->kind]);
-            if (!in_range(type, field, value, why))
-                return false;
-        }
+    const unsigned width = kind_bytes[kind];
+    if (width == 1)
+        memcpy(bytes, values, n);
+    for (uint32_t i = 0; width == 2 && i < n; i++) {
+        uint16_t bits;
+        memcpy(&bits, values + 2 * (size_t)i, 2);
+        put_big_endian(bits, 2, bytes + 2 * (size_t)i);
     }
-    return true;
+    for (uint32_t i = 0; width == 4 && i < n; i++) {
+        uint32_t bits;
+        uint8_t *to = bytes + 4 * (size_t)i;
+        memcpy(&bits, values + 4 * (size_t)i, 4);
+        to[0] = (uint8_t)(bits >> 24); /* written out, compilers make one instruction of it */
+        to[1] = (uint8_t)(bits >> 16);
+        to[2] = (uint8_t)(bits >> 8);
+        to[3] = (uint8_t)bits;
+    }
+    for (uint32_t i = 0; width == 8 && i < n; i++) {
+        uint64_t bits;
+        memcpy(&bits, values + 8 * (size_t)i, 8);
+        put_big_endian(bits, 8, bytes + 8 * (size_t)i);
+    }
 }
 
-static int encoded(const struct type *type, int size, struct grrl_wire_why *why)
+/* The same checks, on the sender's side. Returns the bytes written, or -1. */
+static int encode(const struct type *type, const void *message, int capacity, uint8_t *data,
+                  struct grrl_wire_why *why)
 {
-    if (size < 0)
-        (void)snprintf(why->text, sizeof why->text, "%s: the buffer is too small", type->name);
-    return size < 0 ? -1 : size;
+    const uint32_t room = capacity < 0 ? 0 : (uint32_t)capacity;
+    uint32_t at = HEAD_BYTES;
+    for (size_t f = 0; f < type->n_fields; f++) {
+        const struct field *field = &type->fields[f];
+        const unsigned char *values = place_const(field, message);
+        uint32_t n = count(field, message);
+        if (field->kind != BYTE && !all_in_range(field, values, n)) {
+            (void)refuse(type, field, values, why);
+            return -1;
+        }
+        if (room < at || n * kind_bytes[field->kind] > room - at) {
+            (void)snprintf(why->text, sizeof why->text, "%s: the buffer is too small", type->name);
+            return -1;
+        }
+        put((enum kind)field->kind, values, n, data + at);
+        at += n * kind_bytes[field->kind];
+    }
+    put_big_endian((uint64_t)type->fingerprint(), HEAD_BYTES, data);
+    return (int)at;
 }
 
 /* Checks what the table cannot express: indices of links must be below the number of links. */
@@ -406,9 +493,7 @@ static bool check_picture(const grrl_image_t *image, struct grrl_wire_why *why)
     int grrl_wire_encode_##x(const grrl_##x##_t *message, int capacity, uint8_t *data,             \
                              struct grrl_wire_why *why)                                            \
     {                                                                                              \
-        if (!check(&x##_type, message, why))                                                       \
-            return -1;                                                                             \
-        return encoded(&x##_type, grrl_##x##_t_encode(data, 0, capacity, message), why);           \
+        return encode(&x##_type, message, capacity, data, why);                                    \
     }
 
 #define DECODE(x)                                                                                  \
@@ -460,9 +545,8 @@ bool grrl_wire_decode_model(const void *data, uint32_t size, struct grrl_wire_mo
 int grrl_wire_encode_model(const grrl_model_t *message, int capacity, uint8_t *data,
                            struct grrl_wire_why *why)
 {
-    if (!check(&model_type, message, why) || !check_indices(message, why))
-        return -1;
-    return encoded(&model_type, grrl_model_t_encode(data, 0, capacity, message), why);
+    int size = encode(&model_type, message, capacity, data, why);
+    return size >= 0 && check_indices(message, why) ? size : -1;
 }
 
 bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_image *out,
@@ -475,9 +559,8 @@ bool grrl_wire_decode_image(const void *data, uint32_t size, struct grrl_wire_im
 int grrl_wire_encode_image(const grrl_image_t *message, int capacity, uint8_t *data,
                            struct grrl_wire_why *why)
 {
-    if (!check(&image_type, message, why) || !check_picture(message, why))
-        return -1;
-    return encoded(&image_type, grrl_image_t_encode(data, 0, capacity, message), why);
+    int size = encode(&image_type, message, capacity, data, why);
+    return size >= 0 && check_picture(message, why) ? size : -1;
 }
 
 void grrl_wire_bind_image(struct grrl_wire_image *image)

@@ -51,12 +51,14 @@ enum onboard_packet_type {
     ONBOARD_BAD
 };
 
-/* The largest packet: a full model, or a frame. */
+/* The largest packet: a full model, or a frame. A firmware to which no model goes may say less. */
 #define ONBOARD_MODEL_BYTES                                                                        \
     (5 + 28 * GRRL_MAX_LINKS + 59 * GRRL_MAX_JOINTS + 13 * GRRL_MAX_FEATURES)
 #define ONBOARD_FRAME_BYTES (3 + 12 * GRRL_MAX_FEATURES)
+#ifndef ONBOARD_MAX_BYTES
 #define ONBOARD_MAX_BYTES                                                                          \
     (ONBOARD_MODEL_BYTES > ONBOARD_FRAME_BYTES ? ONBOARD_MODEL_BYTES : ONBOARD_FRAME_BYTES)
+#endif
 
 struct onboard_packet {
     uint8_t type;

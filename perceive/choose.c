@@ -1,10 +1,10 @@
 /*
- * choose.c: which tracks to keep when there are more than perception holds.
+ * choose.c: which tracks to keep if there are more than perception holds.
  *
- * Length: tracks shorter than half of what the most-th longest has are left out first. Spread: the
- * others are put in order along a Hilbert curve by their mean position, which keeps neighbours
- * together; the curve is cut into `most` pieces of as many tracks, and of each the longest track
- * stays. So every part of the picture keeps its share, and a part with many points keeps more.
+ * Length: tracks less than half as long as the `most`-th longest are left out first. Spread: the
+ * others are ordered by mean position along a Hilbert curve, which keeps neighbours together; the
+ * curve is cut into `most` pieces with equally many tracks, and the longest track of each piece is
+ * kept. So every part of the image keeps its share, and a part with many points keeps more.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ struct box {
     float side;
 };
 
-/* Along the curve to cell (x, y). */
+/* Distance along the curve to cell (x, y). */
 static uint32_t hilbert(uint32_t x, uint32_t y)
 {
     uint32_t distance = 0;
@@ -97,7 +97,7 @@ static int by_place(const void *left, const void *right)
     return a->first < b->first ? -1 : a->first > b->first;
 }
 
-/* Puts those that stay to the front. */
+/* Moves the tracks to keep to the front. */
 static void select_candidates(struct candidate *candidate, size_t n, size_t most)
 {
     qsort(candidate, n, sizeof *candidate, by_length);
@@ -111,7 +111,7 @@ static void select_candidates(struct candidate *candidate, size_t n, size_t most
         for (size_t i = best + 1; i < (piece + 1) * n_long / most; i++)
             if (candidate[i].length > candidate[best].length)
                 best = i;
-        /* piece <= best: what is swapped away has been looked at */
+        /* piece <= best: the one swapped away has already been considered */
         struct candidate chosen = candidate[best];
         candidate[best] = candidate[piece];
         candidate[piece] = chosen;

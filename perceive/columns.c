@@ -1,4 +1,4 @@
-/* columns.c: names of columns, and tables of another shape told from a misspelt one. */
+/* columns.c: column names; distinguishes tables of another shape from a misspelt header. */
 #include "columns.h"
 
 #include <ctype.h>
@@ -6,22 +6,23 @@
 #include <string.h>
 
 const char grrl_columns_advice[] =
-    "the header names the columns frame,point,x,y and perhaps visible (x_px,y_px for pixels), "
-    "separated by commas, semicolons or tabs";
+    "the header must name the columns frame,point,x,y and optionally visible (x_px,y_px for "
+    "pixels), separated by commas, semicolons or tabs";
 
 static const char wide_advice[] =
-    "a table with several points in a row; write a row for each point of each frame, with the "
-    "columns frame,point,x,y (docs/perceive.md, Wide tables)";
+    "a table with several points per row; write one row per point and frame, with the columns "
+    "frame,point,x,y (docs/perceive.md, Wide tables)";
 
 static const char no_header_advice[] =
-    "numbers, but no header; the first line names the columns: frame,point,x,y";
+    "numbers, but no header; the first line must name the columns: frame,point,x,y";
 
 enum { NAME_BYTES = 40 };
 
-/* Which name of x belongs to which of y. */
+/* Which name of x goes with which name of y. */
 enum family { NONE, PLAIN, PIXELS, POS_X, X_POS, POSITION_X, X_POSITION };
 
-/* By falling rank: the first in a file that has several counts; two of one rank are refused. */
+/* The smaller the rank, the higher the priority: if a file has several, the first counts; two of
+ * the same rank are refused. */
 static const struct name {
     const char *text;
     enum grrl_column column;
@@ -78,7 +79,7 @@ static const struct name {
 
 enum { N_NAMES = sizeof names / sizeof names[0], OCCLUDED_RANK = 3 };
 
-/* In lower case, with _ for blanks, dots and dashes: Track ID is track_id. */
+/* In lower case, with _ for blanks, dots and dashes: Track ID becomes track_id. */
 static void normalise(const char *text, char *name)
 {
     size_t n = 0;
@@ -140,9 +141,9 @@ static bool has_no_header(const struct grrl_csv_field *fields, int n)
 static bool check_shape(struct grrl_csv *csv, const struct grrl_csv_field *fields, int n,
                         const struct grrl_columns *columns)
 {
-    static const char *const missing[] = {"there is no column frame", "there is no column point",
-                                          "there is no column x or x_px",
-                                          "there is no column y or y_px"};
+    static const char *const missing[] = {
+        "the column frame is missing", "the column point is missing",
+        "the column x or x_px is missing", "the column y or y_px is missing"};
     char first[NAME_BYTES];
     normalise(fields[0].text, first);
     if (strcmp(first, "scorer") == 0)
@@ -167,8 +168,8 @@ static bool check_pair(struct grrl_csv *csv, const struct grrl_csv_field *y,
         return true;
     bool pixels = of_x->family == PIXELS || of_y->family == PIXELS;
     return grrl_csv_fail(csv, y->column,
-                         pixels ? "one of x and y is in pixels, the other not"
-                                : "this name and that of the column with x do not match",
+                         pixels ? "one of x and y is in pixels, the other is not"
+                                : "this name does not match that of the x column",
                          y->text);
 }
 
@@ -199,7 +200,7 @@ bool grrl_columns_find(struct grrl_csv *csv, struct grrl_columns *columns)
     }
     for (int i = 0; i < GRRL_COLUMNS; i++)
         if (twice[i] != NULL)
-            return grrl_csv_fail(csv, twice[i]->column, "another column means the same",
+            return grrl_csv_fail(csv, twice[i]->column, "another column has the same meaning",
                                  twice[i]->text);
     if (!check_shape(csv, fields, n, columns) ||
         !check_pair(csv, &fields[columns->place[GRRL_COLUMN_Y]], taken[GRRL_COLUMN_X],

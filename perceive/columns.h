@@ -1,4 +1,4 @@
-/* columns.h: which column of a table of tracks is which, by the names that trackers give them. */
+/* columns.h: identifies the columns of a table of tracks by the names that trackers use. */
 #ifndef GRRL_PERCEIVE_COLUMNS_H
 #define GRRL_PERCEIVE_COLUMNS_H
 
@@ -16,21 +16,21 @@ enum grrl_column {
 enum { GRRL_COLUMN_ABSENT = -1 };
 
 struct grrl_columns {
-    int place[GRRL_COLUMNS]; /* of each in a row, or GRRL_COLUMN_ABSENT: visible only */
+    int place[GRRL_COLUMNS]; /* index of each in a row; GRRL_COLUMN_ABSENT is possible for visible
+                                only */
     int n_fields;
     bool in_pixels;
     bool occluded; /* the column visible says the opposite */
 };
 
 /*
- * Finds the separator and the columns in the header, which is the line in csv->text. False, with a
- * message: a column is missing or there twice, or the table is none with a row for each point of
- * each frame (one of DeepLabCut, x1,y1,x2,y2, no header), and what to do then. docs/perceive.md has
- * the names.
+ * Finds the separator and the columns in the header, the line in csv->text. false, with a message
+ * that says what to do: a column is missing or duplicated, or the table does not have one row per
+ * point and frame (DeepLabCut, x1,y1,x2,y2, no header). docs/perceive.md lists the names.
  */
 bool grrl_columns_find(struct grrl_csv *csv, struct grrl_columns *columns);
 
-/* The message of a file that has no header. */
+/* The message for a file without a header. */
 extern const char grrl_columns_advice[];
 
 #endif

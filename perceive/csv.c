@@ -1,4 +1,4 @@
-/* csv.c: lines by any end, fields by one separator, quotes undone in place. */
+/* csv.c: lines with any ending, fields with one separator, quotes removed in place. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "csv.h"
@@ -35,11 +35,11 @@ static bool refuse_zero_byte(struct grrl_csv *csv, size_t length)
     bool utf16 = length > 0 && ((unsigned char)csv->text[0] & 0xfe) == 0xfe;
     return grrl_csv_fail(csv, 1,
                          utf16 ? "this is UTF-16; save it as UTF-8 or plain text"
-                               : "this is no text: there is a zero byte in it",
+                               : "this is not text: it contains a zero byte",
                          "");
 }
 
-/* One line without its end, blank or not. */
+/* Reads one line, blank or not, without its ending. */
 static enum grrl_csv_status read_line(struct grrl_csv *csv)
 {
     size_t length = 0;
@@ -92,7 +92,8 @@ void grrl_csv_find_separator(struct grrl_csv *csv)
     csv->separator = candidates[best];
 }
 
-/* A quoted field from its opening quote on: the text moves onto the quotes. NULL: not closed. */
+/* Removes the quotes of a field in place, starting at its opening quote. Returns the byte after the
+ * closing quote; NULL: not closed. */
 static char *unquote(char *at)
 {
     char *to = at;
@@ -114,7 +115,7 @@ static char *skip_blanks(const struct grrl_csv *csv, char *at)
     return at;
 }
 
-/* Takes one field; the end of it (a separator or the end of the line), NULL: it is wrong. */
+/* Reads one field. Returns its end (a separator or the end of the line); NULL: malformed. */
 static char *take_field(struct grrl_csv *csv, char *at, struct grrl_csv_field *field)
 {
     char *begin = skip_blanks(csv, at);
@@ -126,8 +127,8 @@ static char *take_field(struct grrl_csv *csv, char *at, struct grrl_csv_field *f
         if (end != NULL && (*end == '\0' || *end == csv->separator))
             return end;
         (void)grrl_csv_fail(csv, field->column,
-                            end == NULL ? "a quote that this line does not close"
-                                        : "text behind a closing quote",
+                            end == NULL ? "a quote that is not closed in this line"
+                                        : "text after a closing quote",
                             "");
         return NULL;
     }
@@ -147,7 +148,8 @@ int grrl_csv_split(struct grrl_csv *csv, struct grrl_csv_field *fields)
     for (;;) {
         if (n == GRRL_CSV_MAX_FIELDS) {
             (void)grrl_csv_fail(csv, (int)(at - csv->text) + 1,
-                                "more than 1024 columns; a row has one point of one frame", "");
+                                "more than 1024 columns; a row must have one point of one frame",
+                                "");
             return -1;
         }
         char *end = take_field(csv, at, &fields[n]);

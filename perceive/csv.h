@@ -1,7 +1,7 @@
 /*
- * csv.h: lines and fields of a text of separated values, whoever wrote it.
+ * csv.h: lines and fields of separated values from any program.
  *
- * Lines end with LF, CRLF or CR. Fields may be quoted as in RFC 4180; a quoted field ends in its
+ * Lines end with LF, CRLF or CR. Fields may be quoted as in RFC 4180; a quoted field ends on its
  * line. Order of calls: grrl_csv_next_line, grrl_csv_find_separator on the header, grrl_csv_split
  * on each line, grrl_csv_free.
  */
@@ -19,33 +19,37 @@ enum { GRRL_CSV_MAX_FIELDS = 1024 };
 /* A field of the line being read, without the blanks and quotes around it. */
 struct grrl_csv_field {
     char *text;
-    int column; /* of its first character, from 1 */
+    int column; /* of its first character, counted from 1 */
 };
 
-/* Fill in the first three, zero the rest. */
+/* Fill in the first three fields, zero the rest. */
 struct grrl_csv {
     FILE *file;
     const char *path;                /* for the errors */
     struct grrl_tracks_error *error; /* of the call that failed */
-    size_t line;                     /* the one read last, from 1 */
+    size_t line;                     /* the last one read, counted from 1 */
     char separator;
-    char *text; /* of that line; changed by grrl_csv_split */
+    char *text; /* of that line; grrl_csv_split changes it */
     size_t capacity;
-    int past_end; /* column behind its last field */
+    int past_end; /* the column after its last field */
 };
 
 enum grrl_csv_status { GRRL_CSV_LINE, GRRL_CSV_END, GRRL_CSV_BAD };
 
-/* The next line that is not blank, in csv->text. At the end csv->line is the line behind it. */
+/* Reads the next line that is not blank into csv->text. At the end, csv->line is one past the last
+ * line. */
 enum grrl_csv_status grrl_csv_next_line(struct grrl_csv *csv);
 
-/* The one of comma, semicolon and tab that the line has most of, outside quotes; else a comma. */
+/* Picks comma, semicolon or tab, whichever is most frequent in the line outside quotes; by default
+ * a comma. */
 void grrl_csv_find_separator(struct grrl_csv *csv);
 
-/* Cuts csv->text into fields. How many; -1: a quote is not closed, or there are too many. */
+/* Splits csv->text into fields. Returns how many; -1: a quote is not closed, or there are too many.
+ */
 int grrl_csv_split(struct grrl_csv *csv, struct grrl_csv_field *fields);
 
-/* Writes PATH:LINE:COLUMN: TEXT: WHAT into csv->error; text "": none. Always false. */
+/* Writes PATH:LINE:COLUMN: TEXT: WHAT into csv->error; text "" is left out. Always returns false.
+ */
 bool grrl_csv_fail(struct grrl_csv *csv, int column, const char *what, const char *text);
 
 void grrl_csv_free(struct grrl_csv *csv);

@@ -1,23 +1,24 @@
-/* doubts.c: lost points, units, sizes and damaged logs, told in words. */
+/* doubts.c: warnings about lost points, units, sizes and damaged logs. */
 #include "doubts.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-/* Points within less than this, in standard deviations of the noise, show nothing. */
+/* Points whose extent is below this, in standard deviations of the noise, are no basis for an
+ * answer. */
 #define SMALL_WORLD 20.0
 
-/* Pixels and millimetres within this are metres, or normalised. */
+/* Pixels or millimetres within this extent are more likely metres, or normalised. */
 #define SMALL_IN_UNITS 3.0
 
-/* Of a position that went from its unit to metres and back. */
+/* For a position converted from its unit to metres and back. */
 #define ROUNDING 1e-6
 
-/* From this share on the size of a body changes, and the rigid model does not hold. */
+/* From this relative change in size on, the rigid model does not hold. */
 #define SIZE_CHANGE 0.05
 
-/* No table is as wide, in metres. */
+/* No table is this wide, in metres. */
 #define LARGE_WORLD_M 20.0
 
 /* --- the input -------------------------------------------------------------------------------- */
@@ -31,13 +32,13 @@ static void doubt_lost(const struct grrl_tracks *tracks, struct grrl_warnings *w
                   lost->empty, all);
     if (lost->marked > 0)
         grrl_warn(warnings,
-                  "%zu of %zu positions are exactly (0, 0) or (-1, -1), in tracks that leap there: "
+                  "%zu of %zu positions are exactly (0, 0) or (-1, -1), in tracks that jump there: "
                   "taken as not visible",
                   lost->marked, all);
     if (lost->frozen > 0)
         grrl_warn(warnings,
-                  "%zu of %zu positions repeat the last one exactly while others scatter: taken as "
-                  "not visible",
+                  "%zu of %zu positions repeat the previous one exactly while other points "
+                  "scatter: taken as not visible",
                   lost->frozen, all);
 }
 
@@ -62,7 +63,7 @@ static void doubt_damage(const struct grrl_tracks_log *log, struct grrl_warnings
         grrl_warn(warnings, "%s; %" PRId64 " bytes are lost", where, log->damaged_bytes);
     grrl_warn(warnings, "trial %" PRId32 " is read, %s", log->trial,
               log->holed ? "and frames of it may be lost there"
-                         : "which the damage does not touch");
+                         : "which the damage does not affect");
 }
 
 static void doubt_log(const struct grrl_tracks_log *log, struct grrl_warnings *warnings)
@@ -149,21 +150,21 @@ void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *w
                   "--unit",
                   counts->refused);
     if (percent >= 100.0 / 3.0)
-        grrl_warn(warnings, "%.0f%% of the points are not used: see the dropped ones", percent);
+        grrl_warn(warnings, "%.0f%% of the points are not used: see the dropped points", percent);
     for (unsigned b = 0; b < report->model->n_bodies; b++) {
         double change = (double)grrl_perception_size_change(report->perception, (uint8_t)b);
         if (change > SIZE_CHANGE)
             grrl_warn(warnings,
-                      "the size of f%u changes by %.0f%%: not a plane seen from above and from one "
-                      "distance; bodies and joints are doubtful",
+                      "the size of f%u changes by %.0f%%: not a plane seen from above at a "
+                      "constant distance; bodies and joints are doubtful",
                       (unsigned)report->model->body[b].number, 100.0 * change);
     }
     if (report->model->n_bodies == GRRL_MAX_LINKS)
-        grrl_warn(warnings, "%d bodies are all this build holds; there may be more",
+        grrl_warn(warnings, "%d bodies are the limit of this build; there may be more",
                   GRRL_MAX_LINKS);
     unsigned least = 2u * report->perception->config.min_features;
     if (report->tracks < least)
         grrl_warn(warnings,
-                  "%u tracks: a link needs %u points or more; fewer are taken to another link",
+                  "%u tracks: a link needs at least %u points; fewer are assigned to another link",
                   report->tracks, least / 2);
 }

@@ -1,4 +1,4 @@
-/* doubts.h: what in a recording makes its answer doubtful. */
+/* doubts.h: what makes the answer for a recording doubtful. */
 #ifndef GRRL_PERCEIVE_DOUBTS_H
 #define GRRL_PERCEIVE_DOUBTS_H
 
@@ -6,14 +6,15 @@
 #include "tracks.h"
 #include "warnings.h"
 
-/* Lost points of a CSV file; damages and sessions of a log. */
+/* Lost points of a CSV file; damage and sessions of a log. */
 void grrl_doubt_input(const struct grrl_tracks *tracks, struct grrl_warnings *warnings);
 
-/* Positions, in metres, that suggest another unit than report->unit; said: the user named it. */
+/* Positions, in metres, that suggest a unit other than report->unit; said: the user named the unit.
+ */
 void grrl_doubt_unit(const struct grrl_tracks *tracks, const struct grrl_report *report, bool said,
                      struct grrl_warnings *warnings);
 
-/* What perception could not take, and from a third of all points on, how much that is. */
+/* Points that perception could not use, and their share if it is at least a third. */
 void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *warnings);
 
 #endif

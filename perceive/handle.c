@@ -1,4 +1,4 @@
-/* handle.c: the trajectory of one point, from a text of numbers. */
+/* handle.c: reads the trajectory of one point from a text file, prints the answer. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "handle.h"
@@ -16,11 +16,11 @@ struct reader {
     struct grrl_tracks_error *error;
     float scale;
     size_t line;
-    size_t n; /* coordinates so far */
+    size_t n; /* number of coordinates so far */
     size_t capacity;
     float *value;
-    int numbers;    /* in a row; 0: no row yet */
-    int dimensions; /* of a position in it */
+    int numbers;    /* per row; 0: no row yet */
+    int dimensions; /* of a position in a row */
 };
 
 static bool fail(struct reader *reader, int column, const char *what)
@@ -44,10 +44,10 @@ static bool add(struct reader *reader, float value)
     return true;
 }
 
-/* Numbers of a row: two or three are a position, seven a pose. */
+/* Numbers in a row: two or three are a position, seven a pose. */
 enum { MOST = 8, POSE = 7, QUATERNION = 3 };
 
-/* What a quaternion's norm may be off: text is rounded. */
+/* Tolerance of a quaternion's norm: text is rounded. */
 #define NORM_SLACK 0.05f
 
 static const char row_advice[] = "a row is x y, x y z or a pose: x y z and a quaternion";
@@ -61,14 +61,14 @@ static bool check_count(struct reader *reader, int n, const float *value)
             norm2 += value[i] * value[i];
         return fabsf(sqrtf(norm2) - 1.0f) <= NORM_SLACK ||
                fail(reader, 1,
-                    "seven numbers, but the last four are no quaternion of length 1; a pose is x y "
-                    "z and a quaternion");
+                    "seven numbers, but the last four are not a quaternion of length 1; a pose is "
+                    "x y z and a quaternion");
     }
     if (n == 2 || n == 3)
         return true;
     (void)snprintf(what, sizeof what, "%d number%s%s; %s%s", n, n == 1 ? "" : "s",
                    n == 1 ? " only" : "", row_advice,
-                   n == MOST ? " (a time before them has to go)" : "");
+                   n == MOST ? " (remove a leading time stamp)" : "");
     return fail(reader, 1, what);
 }
 
@@ -85,7 +85,7 @@ static bool read_row(struct reader *reader, const char *line)
         float number = strtof(at, &end);
         int column = (int)(at - line) + 1;
         if (end == at || (*end != '\0' && strchr(blanks, *end) == NULL) || !isfinite(number))
-            return fail(reader, column, "no finite number; a row is x y, x y z or a pose");
+            return fail(reader, column, "not a finite number; a row is x y, x y z or a pose");
         if (n == MOST)
             return fail(reader, column, "a ninth number; a row is x y, x y z or a pose");
         value[n++] = number;
@@ -151,7 +151,7 @@ static const char *name_of(enum grrl_trajectory_answer answer)
     return names[answer];
 }
 
-/* Of the answer; of none, the greatest. */
+/* The probability of the answer; if undetermined, the greatest one. */
 static float probability_of(const struct grrl_trajectory_fit *fit)
 {
     const float p[] = {fit->revolute.probability, fit->prismatic.probability, fit->p_rigid,

@@ -1,4 +1,4 @@
-/* log_reader.c: events by their lengths; behind a damage, by the sync word. */
+/* log_reader.c: finds events by their lengths; after damage, by the sync word. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "log_reader.h"
@@ -15,7 +15,8 @@
 
 #define SYNC UINT32_C(0xeda1da01)
 
-/* The sync word, then number and time of the event, 8 bytes each, then two lengths, 4 each. */
+/* The sync word, then the number and the time of the event (8 bytes each), then two lengths (4
+ * bytes each). */
 enum { SYNC_BYTES = 4, NUMBER_AT = 4, CHANNEL_AT = 20, DATA_AT = 24, HEADER_BYTES = 28 };
 enum { MAX_CHANNEL = 1000, BLOCK_BYTES = 65536 };
 
@@ -46,7 +47,7 @@ bool grrl_log_open(struct grrl_log_reader *reader, const char *path,
     if (reader->fd < 0 || fstat(reader->fd, &status) != 0)
         (void)fail(reader, error, strerror(errno));
     else if (!S_ISREG(status.st_mode))
-        (void)fail(reader, error, "a log must be a file that can be read twice");
+        (void)fail(reader, error, "a log must be a regular file, since it is read twice");
     else
         reader->size = status.st_size;
     if (reader->fd >= 0 && S_ISREG(status.st_mode))
@@ -63,7 +64,7 @@ void grrl_log_close(struct grrl_log_reader *reader)
     *reader = (struct grrl_log_reader){.fd = -1};
 }
 
-/* Reads n bytes from `at` on; false: they are not there, or cannot be read. */
+/* Reads n bytes from `at`; false: they do not exist or cannot be read. */
 static bool read_at(const struct grrl_log_reader *reader, int64_t at, size_t n, uint8_t *bytes)
 {
     while (n > 0) {
@@ -79,7 +80,7 @@ static bool read_at(const struct grrl_log_reader *reader, int64_t at, size_t n, 
     return true;
 }
 
-/* Whether a sync word stands there, or the log ends, perhaps within one. */
+/* Whether a sync word is at `at`, or the log ends there or within one. */
 static bool is_sync(const struct grrl_log_reader *reader, int64_t at)
 {
     uint8_t bytes[SYNC_BYTES] = {0xed, 0xa1, 0xda, 0x01};
@@ -87,7 +88,7 @@ static bool is_sync(const struct grrl_log_reader *reader, int64_t at)
     return read_at(reader, at, n, bytes) && number_at(bytes) == SYNC;
 }
 
-/* Whether a whole event begins there: followed by another one, or by the end of the log. */
+/* Whether an intact event begins at `at`: another one, or the end of the log, must follow it. */
 static bool event_at(const struct grrl_log_reader *reader, int64_t at, struct header *header)
 {
     uint8_t bytes[HEADER_BYTES];
@@ -105,7 +106,7 @@ static bool event_at(const struct grrl_log_reader *reader, int64_t at, struct he
     return is_sync(reader, end);
 }
 
-/* Where the next whole event begins, `from` or later; the size of the log: nowhere. */
+/* Where the next intact event begins, at `from` or later; the size of the log: there is none. */
 static int64_t find_event(const struct grrl_log_reader *reader, int64_t from)
 {
     uint8_t block[BLOCK_BYTES];
@@ -117,7 +118,7 @@ static int64_t find_event(const struct grrl_log_reader *reader, int64_t from)
         for (size_t i = 0; i + SYNC_BYTES <= n; i++)
             if (number_at(block + i) == SYNC && event_at(reader, from + (int64_t)i, &header))
                 return from + (int64_t)i;
-        from += (int64_t)(n - SYNC_BYTES + 1); /* a sync word may lie across */
+        from += (int64_t)(n - SYNC_BYTES + 1); /* a sync word may straddle two blocks */
     }
     return reader->size;
 }

@@ -1,17 +1,17 @@
 /*
  * lost.c: points that a tracker has lost but still writes a position for.
  *
- * Two habits are known, and each is believed only where the whole recording shows it.
+ * Two habits are known, and each is assumed only if the whole recording shows it.
  *
- * Marks: (0, 0) or (-1, -1), exactly. Evidence: tracks that leap to or from a mark, farther than
- * LEAP times the longest of their other steps (per frame). Two such tracks, or one that stands on
- * the mark in FEW frames, and every point on the mark is lost.
+ * Marks: exactly (0, 0) or (-1, -1). Evidence: tracks that jump to or from a mark by more than LEAP
+ * times the longest of their other steps (per frame). If there are two such tracks, or one that is
+ * on the mark in at least FEW frames, every point on the mark is lost.
  *
- * Frozen: the last position again and again. Evidence: outside of runs of RUN and more equal
- * positions, most tracks never repeat one exactly (one step in RARE may), so noise or motion tells
- * apart whatever is seen. Then such a run is lost from its second position on, in a track that
- * otherwise repeats as rarely. Not so if TOGETHER or more tracks repeat over the very same frames:
- * then a body without noise has come to rest.
+ * Frozen: the last position again and again. Evidence: outside runs of at least RUN equal
+ * positions, most tracks never repeat a position exactly (one step in RARE may), so noise or motion
+ * makes visible positions distinct. Then such a run is lost from its second position on, in a track
+ * that otherwise repeats just as rarely. Not if at least TOGETHER tracks repeat over exactly the
+ * same frames: then a body without noise has come to rest.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -24,8 +24,8 @@ enum { FEW = 3, RARE = 50, RUN = 6, LONG_TRACK = 10, LEAST_STEPS = 5, TOGETHER =
 
 struct search {
     struct grrl_tracks *tracks;
-    const struct grrl_tracks_sample *sample; /* by id and time */
-    bool *keep;                              /* by place in the recording */
+    const struct grrl_tracks_sample *sample; /* by id and frame */
+    bool *keep;                              /* by index in the recording */
 };
 
 static bool same(const struct grrl_tracks *tracks, size_t a, size_t b)
@@ -47,7 +47,7 @@ static float step_of(const struct search *search, const struct grrl_tracks_sampl
            (float)(b->frame - a->frame);
 }
 
-/* The longest step of a track off the mark; negative: there are not two. */
+/* The longest step of a track off the mark; negative: fewer than two steps. */
 static float longest_step(const struct search *search, size_t first, size_t end, float mark)
 {
     const struct grrl_tracks_sample *before = NULL;
@@ -65,7 +65,7 @@ static float longest_step(const struct search *search, size_t first, size_t end,
     return steps < 2 ? -1.0f : longest;
 }
 
-/* In how many frames a track stands on the mark, if it has leapt to it or from it; else 0. */
+/* Number of frames in which a track is on the mark, if it jumped to or from it; else 0. */
 static size_t frames_on_mark(const struct search *search, size_t first, size_t end, float mark)
 {
     const struct grrl_tracks *tracks = search->tracks;
@@ -126,7 +126,7 @@ static size_t end_of_run(const struct search *search, size_t begin, size_t end)
     return i;
 }
 
-/* Counts a track's steps; its long runs go to `runs`, unless it is NULL. */
+/* Counts a track's steps and appends its long runs to `runs`, unless that is NULL. */
 static struct track_steps count_steps(const struct search *search, size_t first, size_t end,
                                       struct run *runs)
 {
@@ -153,8 +153,8 @@ static bool hardly_repeats(const struct track_steps *steps)
     return steps->n >= LEAST_STEPS && RARE * steps->repeats <= steps->n;
 }
 
-/* Whether the tracks show that a point that is seen never stands exactly still; *n_runs: how many
- * runs others have. */
+/* Whether the tracks show that a visible point never stands exactly still; *n_runs: number of long
+ * runs in tracks that otherwise do not. */
 static bool all_else_scatters(const struct search *search, size_t *n_runs)
 {
     size_t n = search->tracks->n_points;
@@ -224,7 +224,7 @@ static bool drop_frozen(struct search *search)
     return true;
 }
 
-/* One look at all points by id; `freezes`: at frozen ones, else at marks. */
+/* One pass over all points by id, for frozen points (`freezes`) or for marks. */
 static bool look(struct grrl_tracks *tracks, bool freezes)
 {
     if (tracks->n_points == 0)

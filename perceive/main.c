@@ -20,13 +20,14 @@
 enum { EXIT_FINE = 0, EXIT_INPUT = 1 };
 enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
 
-/* Links from this length on are called large; as for the learner. */
+/* Links at least this long are labelled large, as for the learner. */
 #define LARGE_M 0.15f
 
-/* A body whose size changes by this share is no plane that a camera sees from one distance. */
+/* A body whose size changes by this share is not planar and at a constant distance from the camera.
+ */
 #define SIZE_CHANGE 0.05f
 
-/* A pixel is given to the library as a millimetre. */
+/* The library gets a pixel as a millimetre. */
 static const float pixel_m = 0.001f;
 
 static struct grrl_perception perception;
@@ -59,7 +60,7 @@ static FILE *open_input(const char *path)
     return file;
 }
 
-/* Whether all that was written to a file has got there. */
+/* Closes a file; whether everything was written. */
 static bool close_output(FILE *file, const char *path)
 {
     bool good = fflush(file) == 0 && ferror(file) == 0;
@@ -122,7 +123,7 @@ static bool read_tracks(const struct grrl_perceive_options *options, struct grrl
     return good;
 }
 
-/* The configuration of a profile; *name is what it is called. */
+/* The configuration of a profile; *name is its name. */
 static struct grrl_perception_config configure(const struct grrl_perceive_options *options,
                                                struct unit unit, const char **name)
 {
@@ -154,7 +155,7 @@ static struct grrl_frame frame_of(const struct grrl_tracks *tracks, size_t i)
                                tracks->y + in->first};
 }
 
-/* What the points scatter, of all frames: a file does not tell when things were at rest. */
+/* Measures the noise over all frames: a file does not say when things were at rest. */
 static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
 {
     static struct grrl_noise noise;
@@ -165,18 +166,18 @@ static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
     }
     enum grrl_status status = grrl_noise_estimate(&noise, noise_m);
     if (status == GRRL_ERR_NONE)
-        (void)fail("--noise auto: too few points that are seen in three frames in a row; give "
-                   "--noise X");
+        (void)fail(
+            "--noise auto: too few points are visible in three consecutive frames; give --noise X");
     else if (status != GRRL_OK)
         (void)fail("--noise auto: the points do not scatter, or are rounded; give --noise X");
     return status == GRRL_OK;
 }
 
 /*
- * The recording as pushes: frames at rest are averaged, others become keyframes where something has
- * moved enough. What was believed after a push counts in what is believed after the next, as it
- * does in the agent. The last frame shows where all has come to lie; of two pictures nobody saw
- * the push between them. Ends early where there are more tracks than the library holds.
+ * Replays the recording as pushes: frames at rest are averaged, others become keyframes when
+ * something has moved enough. As in the agent, the estimate after each push builds on the previous
+ * one. The last frame counts as rest; with only two frames, the push between them was not seen.
+ * Ends early if there are more tracks than the library holds.
  */
 static enum grrl_status observe(const struct grrl_tracks *tracks)
 {
@@ -191,7 +192,7 @@ static enum grrl_status observe(const struct grrl_tracks *tracks)
             return GRRL_ERR_FULL;
         if (tracks->frame[i].settled) {
             enum grrl_status status = grrl_perception_update(&perception);
-            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen: perhaps later */
+            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen yet */
                 return status;
         }
     }
@@ -280,7 +281,7 @@ static int report_model(const struct grrl_perceive_options *options,
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
-/* Whether the size of a body changes by so much that rigid bodies do not hold. */
+/* Whether the size of a body changes too much for the rigid model. */
 static bool sizes_change(void)
 {
     const struct grrl_model *model = grrl_perception_model(&perception);
@@ -299,8 +300,8 @@ static unsigned unassigned(const struct grrl_model *model)
 }
 
 /*
- * Before a camera that zooms, or that something nears, a rigid body falls into slices. Once more
- * with bodies that may grow; that holds if it explains no fewer points with fewer bodies.
+ * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
+ * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
  */
 static enum grrl_status observe_growing(const struct grrl_perception_config *config,
                                         const struct grrl_tracks *tracks)
@@ -320,7 +321,7 @@ static enum grrl_status observe_growing(const struct grrl_perception_config *con
     return GRRL_OK;
 }
 
-/* More tracks than the library holds: once more, with those that tell most. */
+/* More tracks than the library holds: tries again with the most informative ones. */
 static enum grrl_status observe_chosen(const struct grrl_perception_config *config,
                                        struct grrl_tracks *tracks)
 {

@@ -1,9 +1,9 @@
 /*
  * motion.c: poses of the bodies from their features, frame by frame, by least squares.
  *
- * A body's shape is what the frame shows that has most of its features; from there on, forward and
- * backward, features that are new take their place in the shape by the pose of the others. So a
- * body's motion goes on over features that come and go, as long as two of them overlap.
+ * A body's shape starts with the frame that shows most of its features. From there, forward and
+ * backward, the pose of the known features places new ones in the shape. So a body can be followed
+ * while features come and go, as long as two of them overlap.
  */
 #include "motion.h"
 
@@ -13,7 +13,8 @@
 
 #include "tracks.h"
 
-#define OUTLIER 5.0f /* residual, in noise and model error, of points left out of a pose */
+/* A pose ignores points with a larger residual, in units of noise + model error. */
+#define OUTLIER 5.0f
 
 enum { NOT_IN_A_BODY = 0xffff };
 
@@ -26,13 +27,13 @@ struct motion {
     const struct grrl_report *report;
     const struct grrl_tracks *tracks;
     float limit2_m2;
-    uint16_t *feature;      /* of each point of the recording, an index of the model */
+    uint16_t *feature;      /* for each point of the recording, its index in the model */
     struct body_pose *pose; /* by frame, then body */
     struct grrl_vec2 shape[GRRL_MAX_FEATURES];
     bool placed[GRRL_MAX_FEATURES];
 };
 
-/* Sums of a least-squares fit of a pose: world = R shape + p. */
+/* Sums for a least-squares fit of a pose: world = R shape + p. */
 struct fit {
     double n;
     double from[2];
@@ -95,7 +96,7 @@ static void fit_add(struct fit *fit, struct grrl_vec2 from, struct grrl_vec2 to)
     fit->sine += (double)from.x * (double)to.y - (double)from.y * (double)to.x;
 }
 
-/* The pose of a fit of two points and more that do not coincide; else not known. */
+/* The pose of a fit to at least two points that do not coincide; else unknown. */
 static struct body_pose fit_pose(const struct fit *fit)
 {
     struct body_pose answer = {{{0.0f, 0.0f}, 1.0f, 0.0f}, false};
@@ -117,7 +118,7 @@ static struct body_pose fit_pose(const struct fit *fit)
     return answer;
 }
 
-/* By the features that have a place in the shape; `rough`: of these, only those it fits. */
+/* Sums over the features that have a place in the shape; with `rough`, only those that fit it. */
 static struct fit sum_up(const struct motion *motion, const struct grrl_tracks_frame *frame,
                          unsigned body, const struct body_pose *rough)
 {
@@ -201,7 +202,7 @@ static struct grrl_vec2 axis_of(const struct motion *motion, const struct grrl_j
     return joint->axis;
 }
 
-/* The middle of a body's shape, where its pose is known best. */
+/* The centroid of a body's shape, where its pose is known best. */
 static struct grrl_vec2 middle_of(const struct motion *motion, unsigned body)
 {
     const struct grrl_model *model = motion->report->model;
@@ -233,7 +234,7 @@ static void write_joint(FILE *file, const struct motion *motion, const struct gr
             continue;
         struct grrl_vec2 there = grrl_untransform(a->pose, grrl_transform(b->pose, middle));
         float value = slides ? grrl_vec2_dot(axis, there) : angle_of(&b->pose) - angle_of(&a->pose);
-        if (!slides && begun) /* beyond half a turn, too */
+        if (!slides && begun) /* continues beyond half a turn */
             value = before + grrl_wrap_rad(value - before);
         first = begun ? first : value;
         before = value;

@@ -5,10 +5,10 @@
 #include "report.h"
 
 /*
- * Writes CSV: frame,a,b,type,value,unit, a row for each joint of the model in each frame that shows
- * two points and more of both bodies. Degrees of b relative to a, positive from x to y, or the
- * travel of b along the joint's axis; 0 in the first such frame. false: memory is short. Cost: a
- * few passes over all points.
+ * Writes CSV (frame,a,b,type,value,unit), a row for each joint of the model in each frame that
+ * shows at least two points of both bodies. The value is the angle of b relative to a in degrees,
+ * positive from x to y, or the travel of b along the joint's axis; 0 in the first such frame.
+ * false: out of memory. Cost: a few passes over all points.
  */
 bool grrl_motion_write(FILE *file, const struct grrl_report *report);
 

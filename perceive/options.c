@@ -9,22 +9,20 @@ static const struct grrl_program program = {
     .usage = "grrl-perceive [OPTION]... TRACKS.csv\n"
              "       grrl-perceive [OPTION]... --log FILE.lcm\n"
              "       grrl-perceive [OPTION]... --handle FILE",
-    .intro =
-        "Finds the links and joints of what tracked points lie on, by how they move.\n\n"
-        "TRACKS.csv, - for standard input: the header names the columns frame,point,x,y (or "
-        "x_px,y_px)\n"
-        "and perhaps visible (0 or 1), in any order; other columns are ignored. Also with ; or "
-        "tabs,\nquotes, empty cells, and the columns' names of common trackers: "
-        "docs/perceive.md.\n",
+    .intro = "Finds the links and joints behind tracked points from their motion.\n\n"
+             "TRACKS.csv, - for standard input: the header names the columns frame,point,x,y (or "
+             "x_px,y_px)\nand optionally visible (0 or 1), in any order; other columns are "
+             "ignored. Separators may be ; or\ntabs; quotes, empty cells and the column names of "
+             "common trackers are understood, too:\ndocs/perceive.md.\n",
     .outro =
         "Profiles:\n"
-        "  tracker  above a table: noise 0.7 mm, what is sparse and never moves is background\n"
-        "  camera   pixels, the camera may move: noise 1 px, model error 1.2 px, no background "
-        "at rest\n"
-        "A handle's file has rows x y, x y z or x y z and a quaternion, in metres unless --unit "
-        "says\notherwise.\n\n"
+        "  tracker  above a table: noise 0.7 mm; sparse points that never move are background\n"
+        "  camera   pixels, the camera may move: noise 1 px, model error 1.2 px, no static "
+        "background\n"
+        "A handle file has rows x y, x y z, or x y z and a quaternion, in metres unless "
+        "--unit says\notherwise.\n\n"
         "Exit status: 0 fine; 1 the input is wrong or cannot be read; 2 wrong command line.\n",
-    .most_arguments = 1,
+    .max_arguments = 1,
     .arguments = "one file of tracks only",
 };
 
@@ -59,7 +57,7 @@ static const char *take_noise(void *context, const char *text)
                : "a number above 0, or auto";
 }
 
-/* A picture is SVG whatever its name; a name that says otherwise misleads the next program. */
+/* Pictures are always SVG; a name with another extension would mislead the next program. */
 static const char *take_svg(void *context, const char *text)
 {
     static const char *const others[] = {".png", ".jpg",  ".jpeg", ".gif", ".bmp",
@@ -74,7 +72,7 @@ static const char *take_svg(void *context, const char *text)
     return NULL;
 }
 
-/* What is wrong about the options together, or NULL. */
+/* What is wrong with the combination of options, or NULL. */
 static const char *contradiction(const struct grrl_perceive_options *options)
 {
     int inputs = (options->tracks != NULL) + (options->log != NULL) + (options->handle != NULL);
@@ -84,13 +82,12 @@ static const char *contradiction(const struct grrl_perceive_options *options)
     if (options->trial != 0 && options->log == NULL)
         return "--trial needs --log FILE";
     if (options->log != NULL && options->unit != GRRL_UNIT_AS_IN_FILE)
-        return "--unit does not go with --log FILE: messages are in metres";
+        return "--unit does not work with --log FILE: messages are in metres";
     if (options->handle != NULL && (options->svg != NULL || options->motion != NULL ||
                                     options->profile != GRRL_PROFILE_OF_UNIT))
-        return "--svg, --motion and --profile do not go with --handle FILE";
+        return "--svg, --motion and --profile do not work with --handle FILE";
     if (options->handle != NULL && options->noise_from_points)
-        return "--noise auto does not go with --handle FILE: what bends a trajectory is "
-               "more than noise";
+        return "--noise auto does not work with --handle FILE: more than noise bends a trajectory";
     if (options->handle != NULL && options->unit == GRRL_UNIT_PX)
         return "--handle FILE is in m or mm";
     if (options->profile == GRRL_PROFILE_CAMERA &&
@@ -108,21 +105,22 @@ enum grrl_options_result grrl_perceive_options_parse(int argc, char **argv,
                          &options->log),
         grrl_option_int("trial", "N", "with --log: this trial (the last one)", 1, INT32_MAX,
                         &options->trial),
-        grrl_option_text("handle", "FILE", "tell by the trajectory of one point what moves it",
+        grrl_option_text("handle", "FILE", "find the joint that moves a single point",
                          &options->handle),
         grrl_option_call("unit", "m|mm|px",
-                         "of the positions (m; px for the columns x_px and y_px)", take_unit,
+                         "unit of the positions (m; px for the columns x_px and y_px)", take_unit,
                          &options->unit),
-        grrl_option_call("profile", "tracker|camera", "what the noise is like (camera for px)",
-                         take_profile, &options->profile),
+        grrl_option_call("profile", "tracker|camera",
+                         "noise and background (tracker; camera for px)", take_profile,
+                         &options->profile),
         grrl_option_call("noise", "X|auto",
-                         "standard deviation of a point, in the file's unit; auto: measure",
+                         "standard deviation of a point, in the unit of the file; auto: measure it",
                          take_noise, options),
         grrl_option_flag("json", "print JSON", &options->json),
         grrl_option_call("svg", "FILE", "draw features, bodies and joints", take_svg,
                          &options->svg),
         grrl_option_text("motion", "FILE",
-                         "write what each joint turns or slides in each frame, as CSV",
+                         "write the angle or travel of each joint in each frame as CSV",
                          &options->motion),
     };
     int first;

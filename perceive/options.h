@@ -12,20 +12,20 @@ enum grrl_unit { GRRL_UNIT_AS_IN_FILE, GRRL_UNIT_M, GRRL_UNIT_MM, GRRL_UNIT_PX }
 enum grrl_profile { GRRL_PROFILE_OF_UNIT, GRRL_PROFILE_TRACKER, GRRL_PROFILE_CAMERA };
 
 struct grrl_perceive_options {
-    const char *tracks; /* CSV; one of the first three is given */
+    const char *tracks; /* CSV; exactly one of the first three is set */
     const char *log;    /* LCM log */
     const char *handle; /* a single trajectory */
     enum grrl_unit unit;
     enum grrl_profile profile;
-    float noise; /* in the unit of the file, 0: as the profile has it */
+    float noise; /* in the unit of the file; 0: that of the profile */
     bool noise_from_points;
-    int trial; /* of a log, 0: the last */
+    int trial; /* of a log; 0: the last */
     bool json;
     const char *svg;    /* NULL: no picture */
-    const char *motion; /* CSV of how the joints move; NULL: none */
+    const char *motion; /* CSV of the joints' motion; NULL: none */
 };
 
-/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+/* Prints help or the version to stdout (DONE), or an error message to stderr (BAD). */
 enum grrl_options_result grrl_perceive_options_parse(int argc, char **argv,
                                                      struct grrl_perceive_options *options);
 

@@ -1,27 +1,28 @@
 /*
- * pace.c: how far points move from frame to frame, and for how long they are seen.
+ * pace.c: how far points move from frame to frame, and for how long they are visible.
  *
- * Of each frame the step counts that SHARE of its points exceed, and three at least: a lone outlier
- * is faster than all that moves. The pace is the median over the frames in which something moved.
+ * The step of a frame is the one that one in SHARE of its points reaches, and at least MOVERS
+ * points: a single outlier is faster than anything that moves. The pace is the median over the
+ * frames in which something moved.
  */
 #include "pace.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* One point in this many, and MOVERS at least, moves as fast or faster: a small link among others,
- * but not the outliers. */
+/* One point in this many, and at least MOVERS, moves at least as fast: enough for a small link, too
+ * many for outliers. */
 enum { SHARE = 10, MOVERS = 3 };
 
-/* A motion is told from noise by this many standard deviations of a point. */
+/* A step is motion rather than noise if it exceeds this many standard deviations of a point. */
 #define MOVING_SIGMAS 6.0f
 
-/* A jump is farther than what moves at this many times the pace: a swing is fastest in its middle,
- * and a point at the end of a link faster than others. */
+/* A jump is longer than this many times the pace: a swing is fastest in the middle, and a point at
+ * the end of a link is faster than others. */
 #define JUMP_PACES 4.0f
 
-/* Frames in which half of the ids are seen at most are too few for a keyframe of three, and the
- * next. */
+/* If half of the ids live for at most this many frames, that is too short for two keyframes of
+ * three frames each. */
 enum { SHORT_LIFE = 12 };
 
 static int by_size(const void *left, const void *right)
@@ -31,7 +32,7 @@ static int by_size(const void *left, const void *right)
     return a < b ? -1 : a > b;
 }
 
-/* A step, by the frame it ends in. */
+/* A step and the frame it ends in. */
 struct step {
     uint32_t frame;
     float length;
@@ -46,7 +47,8 @@ static int by_frame_fastest_first(const void *left, const void *right)
     return a->length > b->length ? -1 : a->length < b->length;
 }
 
-/* Steps between frames that follow one another; life[] gets the number of samples of each track. */
+/* Collects the steps between consecutive frames; life[] gets the number of samples of each track.
+ */
 static size_t find_steps(const struct grrl_tracks *tracks, const struct grrl_tracks_sample *sample,
                          struct step *step, float *life, size_t *n_lives)
 {
@@ -68,7 +70,7 @@ static size_t find_steps(const struct grrl_tracks *tracks, const struct grrl_tra
     return n;
 }
 
-/* The pace of what moves, 0: nothing does. pace[] has room for a number a frame. */
+/* The pace of whatever moves; 0: nothing does. pace[] has room for one number per frame. */
 static float median_pace(struct step *step, size_t n, float least, float *pace)
 {
     size_t n_moving = 0;

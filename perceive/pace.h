@@ -7,10 +7,10 @@
 #include "grrl/perception/perception.h"
 
 /*
- * Fits a configuration to the pace of a recording in metres. Where points move farther from frame
- * to frame than the configuration expects (few frames a second, a large picture, two pictures), or
- * where ids live only for a few frames, jump_m grows and push_frames is 1; otherwise all stays as
- * it is. false: memory is short. Cost: a sort of all points.
+ * Adapts a configuration to the pace of a recording in metres. If points move farther from frame to
+ * frame than the configuration expects (few frames per second, a large image, only two images), or
+ * if ids live for only a few frames, jump_m grows and push_frames is 1; otherwise nothing changes.
+ * false: out of memory. Cost: a sort of all points.
  */
 bool grrl_pace_configure(const struct grrl_tracks *tracks, struct grrl_perception_config *config);
 

@@ -1,24 +1,24 @@
 /*
  * renewed.c: new ids for old points.
  *
- * A tracker that detects anew gives a corner another id where it has lost the old one. A track that
- * begins where another one ended, as far as noise tells, continues it. That is believed where the
- * whole recording shows it: most tracks that end before the last frame have a follower, and where
- * two could follow, none does.
+ * A tracker that redetects a corner it has lost gives it a new id. A track that begins where
+ * another one ended, within noise, continues it. This is assumed only if the whole recording shows
+ * it: at least half of the tracks that end before the last frame have a follower. If two tracks
+ * could follow, neither does.
  */
 #include <math.h>
 #include <stdlib.h>
 
 #include "tracks.h"
 
-/* Frames until the new id, at most. */
+/* The most frames until the new id appears. */
 enum { GAP = 3 };
 
-/* How far a follower begins from where its predecessor was headed, in standard deviations of a
- * point: its own noise and that of two points before, over GAP frames. */
+/* Largest distance of a follower's start from the extrapolated track, in standard deviations of a
+ * point: its own noise and that of two earlier points, over GAP frames. */
 #define NEAR_SIGMAS 6.0f
 
-/* One in so many tracks that end must have a follower. */
+/* One in this many tracks that end must have a follower. */
 enum { HABIT = 2 };
 
 struct track {
@@ -27,7 +27,7 @@ struct track {
     uint32_t last_frame;
     float first[2];
     float last[2];
-    float speed[2]; /* a frame, at the end */
+    float speed[2]; /* per frame, at the end */
     size_t follower;
     size_t leader; /* SIZE_MAX: none */
 };
@@ -53,7 +53,7 @@ static struct track track_of(const struct grrl_tracks *tracks,
     return track;
 }
 
-/* Whether b begins where a was headed. */
+/* Whether b begins where a was heading. */
 static bool may_follow(const struct track *a, const struct track *b, float limit)
 {
     if (b->first_frame <= a->last_frame || b->first_frame > a->last_frame + GAP)
@@ -86,7 +86,7 @@ static size_t first_after(const struct track *track, size_t n, uint32_t frame)
     return low;
 }
 
-/* Pairs tracks by first frame where the choice is not open; returns how many. */
+/* Pairs tracks, sorted by first frame, if the choice is unique; returns how many. */
 static size_t find_followers(struct track *track, size_t n, uint32_t last_frame, float limit,
                              size_t *n_ended)
 {
@@ -111,7 +111,7 @@ static size_t find_followers(struct track *track, size_t n, uint32_t last_frame,
         if (track[j].leader == SIZE_MAX) {
             track[j].leader = i;
             n_pairs++;
-        } else { /* two could have become it */
+        } else { /* two tracks could continue as this one */
             track[i].follower = SIZE_MAX;
         }
     }

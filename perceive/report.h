@@ -1,7 +1,7 @@
 /*
- * report.h: what perception believes, for people (text), programs (JSON) and the eye (SVG).
+ * report.h: the answer as text for people, as JSON for programs and as an SVG picture.
  *
- * Lengths are printed in the unit of the input: a metre of the library is `per_metre` of them.
+ * Lengths are printed in the unit of the input: one metre is `per_metre` of them.
  */
 #ifndef GRRL_PERCEIVE_REPORT_H
 #define GRRL_PERCEIVE_REPORT_H
@@ -16,7 +16,7 @@
 
 struct grrl_report {
     const struct grrl_model *model;
-    const struct grrl_perception *perception; /* that has the model */
+    const struct grrl_perception *perception; /* the owner of the model */
     const struct grrl_perception_counts *counts;
     const struct grrl_tracks *recording; /* in metres, without what was left out */
     const struct grrl_warnings *warnings;
@@ -26,20 +26,20 @@ struct grrl_report {
     double per_metre;
     double noise; /* in that unit */
     unsigned frames;
-    unsigned tracks;    /* ids in the input */
+    unsigned tracks;    /* number of ids in the input */
     unsigned keyframes; /* most at a time */
-    bool y_down;        /* as in pictures */
+    bool y_down;        /* as in images */
 };
 
-/* What is known of bodies a and b, in a word; *pair has the probabilities. */
+/* The relation of bodies a and b in one word; *pair has the probabilities. */
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair);
 
-/* Why they are undetermined, in words; empty: they are not. */
+/* Why they are undetermined, in words; empty if they are not. */
 const char *grrl_report_reason(const struct grrl_pair *pair);
 
-/* Of the points with a position in the input, those that are not used: lost, of tracks left out,
- * outliers and refused ones. */
+/* The share of points with a position that are not used: lost, outliers, refused, or in tracks left
+ * out. */
 double grrl_report_dropped_percent(const struct grrl_report *report);
 
 void grrl_report_text(FILE *file, const struct grrl_report *report);

@@ -1,5 +1,5 @@
-/* report_json.c: the answer for programs. Every text that is printed is ours (terms, names, units,
- * warnings): nothing needs escaping. */
+/* report_json.c: the answer for programs. All printed texts are our own (terms, names, units,
+ * warnings), so nothing needs escaping. */
 #include "report.h"
 
 #include <inttypes.h>
@@ -59,7 +59,7 @@ static void print_joint(FILE *file, const struct grrl_report *report, unsigned i
                   (double)joint->upper * to_unit);
 }
 
-/* Those that no joint ties. */
+/* The pairs without a joint. */
 static void print_pairs(FILE *file, const struct grrl_report *report)
 {
     const struct grrl_body *body = report->model->body;

@@ -1,4 +1,4 @@
-/* report_svg.c: the answer for the eye. */
+/* report_svg.c: the answer as a picture. */
 #include "report.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@ enum {
     MARGIN = 40,
     LINE = 20,      /* of the legend */
     LETTERS = 100,  /* in one line of it */
-    SHORTEST = 200, /* sides of the drawing, whatever the features' extent */
+    SHORTEST = 200, /* limits for the sides of the drawing, whatever the extent of the features */
     LONGEST = 900,
     ELLIPSE_SIGMAS = 2
 };
@@ -23,7 +23,7 @@ enum { N_COLOURS = sizeof colours / sizeof colours[0] };
 struct page {
     FILE *file;
     double scale;
-    double left; /* world coordinate at the left and at the upper edge of the drawing */
+    double left; /* world coordinates of the left and the upper edge of the drawing */
     double top;
     double y_sign;
     double height; /* of the drawing, margins included */
@@ -140,7 +140,7 @@ static void draw_names(const struct page *page, const struct grrl_model *model)
                       (unsigned)model->body[i].number);
 }
 
-/* In SVG a conjunction's & is markup. */
+/* The & of a conjunction is markup in SVG. */
 static void write_escaped(FILE *file, const char *text, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -150,7 +150,8 @@ static void write_escaped(FILE *file, const char *text, size_t n)
             (void)fputc(text[i], file);
 }
 
-/* The term, broken at spaces; how many lines it takes. */
+/* Writes the term, broken at spaces, or only counts its lines if file is NULL; returns the number
+ * of lines. */
 static unsigned write_term(FILE *file, const char *term, double y)
 {
     unsigned lines = 0;

@@ -84,12 +84,12 @@ const char *grrl_report_reason(const struct grrl_pair *pair)
 {
     static const char *const words[] = {
         [GRRL_REASON_NONE] = "",
-        [GRRL_REASON_LITTLE] = "moved apart too little",
+        [GRRL_REASON_LITTLE] = "too little relative motion",
         [GRRL_REASON_NO_TYPE] = "neither type explains the motion, or both do",
-        [GRRL_REASON_UNPROVEN] = "motion of their own explains it as well",
-        [GRRL_REASON_FAR] = "too far from the joint that the motion suggests",
-        [GRRL_REASON_SIZES] = "sizes change against one another",
-        [GRRL_REASON_STRUCTURE] = "other joints leave no place for this one",
+        [GRRL_REASON_UNPROVEN] = "independent motion explains it as well",
+        [GRRL_REASON_FAR] = "too far from the joint the motion suggests",
+        [GRRL_REASON_SIZES] = "their relative size changes",
+        [GRRL_REASON_STRUCTURE] = "other joints leave no room for this one",
     };
     return pair->reason < sizeof words / sizeof words[0] ? words[pair->reason] : "";
 }

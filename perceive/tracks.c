@@ -1,4 +1,4 @@
-/* tracks.c: what all recordings share, wherever they come from. */
+/* tracks.c: functions for all recordings, whatever their source. */
 #include "tracks.h"
 
 #include <stdlib.h>

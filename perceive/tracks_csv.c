@@ -1,4 +1,4 @@
-/* tracks_csv.c: rows of a table, one for each point of each frame, become a recording. */
+/* tracks_csv.c: turns the rows of a table, one per point and frame, into a recording. */
 #include "tracks.h"
 
 #include <ctype.h>
@@ -11,12 +11,12 @@
 #include "columns.h"
 #include "csv.h"
 
-#define LARGEST_WHOLE 9007199254740992.0 /* up to which a double counts every number */
+#define LARGEST_WHOLE 9007199254740992.0 /* a double represents every whole number up to this */
 
-static const char position_advice[] =
-    "a position is a finite number; a point that was not seen has visible 0, or both cells empty";
+static const char position_advice[] = "a position is a finite number; for a point that is not "
+                                      "visible, visible is 0 or both cells are empty";
 static const char comma_advice[] =
-    "is this a decimal comma, or one between thousands? Write decimal points";
+    "is this a decimal comma or a thousands separator? Use decimal points";
 
 struct row {
     long long frame;
@@ -27,7 +27,7 @@ struct row {
     size_t line;
 };
 
-/* A cell to come back to. */
+/* A cell to report later. */
 struct place {
     size_t line; /* 0: none yet */
     int column;
@@ -41,9 +41,9 @@ struct reader {
     size_t n_rows;
     size_t capacity;
     size_t n_empty; /* rows without a position */
-    /* of numbers between semicolons: */
+    /* for numbers separated by semicolons: */
     struct place first_comma;
-    bool comma_is_decimal; /* one was seen that cannot stand between thousands */
+    bool comma_is_decimal; /* one was seen that cannot be a thousands separator */
     struct place first_point;
 };
 
@@ -63,7 +63,8 @@ static void remember(const struct reader *reader, const struct grrl_csv_field *f
     (void)snprintf(place->text, sizeof place->text, "%s", field->text);
 }
 
-/* Whether a number with one comma may be 1,234: one to three digits, no zero before, and three. */
+/* Whether a number with one comma may have a thousands separator: one to three digits without a
+ * leading zero, then three. */
 static bool may_be_thousands(const char *text, const char *comma)
 {
     text += strspn(text, "+-");
@@ -71,8 +72,8 @@ static bool may_be_thousands(const char *text, const char *comma)
            strspn(comma + 1, "0123456789") == 3;
 }
 
-/* Between semicolons a comma may be a decimal one: it becomes a point. What the file as a whole
- * says of its commas is asked in check_commas. */
+/* Between semicolons a comma may be a decimal comma: it becomes a point. check_commas decides for
+ * the file as a whole. */
 static void take_comma(struct reader *reader, const struct grrl_csv_field *field)
 {
     char *comma = strchr(field->text, ',');
@@ -94,7 +95,7 @@ static bool check_commas(struct reader *reader)
         return true;
     if (reader->first_point.line > 0)
         return fail_at(reader, &reader->first_point,
-                       "a decimal point, but other numbers have a decimal comma");
+                       "a decimal point, but other numbers use a decimal comma");
     return reader->comma_is_decimal || fail_at(reader, &reader->first_comma, comma_advice);
 }
 
@@ -141,7 +142,7 @@ static bool is_word(const char *text, const char *lower_case)
     return *text == '\0' && *lower_case == '\0';
 }
 
-/* What exporters write for no number. */
+/* What exporters write for a missing number. */
 static bool is_missing(const char *text)
 {
     static const char *const words[] = {"", "nan", "-nan", "na", "<na>", "none", "null"};
@@ -156,8 +157,8 @@ static bool parse_visible(struct reader *reader, const struct grrl_csv_field *fi
     long long number = is_word(field->text, "true");
     if (number == 0 && !is_word(field->text, "false") && !parse_whole(reader, field, 0, 1, &number))
         return grrl_csv_fail(&reader->csv, field->column,
-                             reader->columns.occluded ? "occluded is 0 or 1, true or false"
-                                                      : "visible is 0 or 1, true or false",
+                             reader->columns.occluded ? "occluded must be 0 or 1, true or false"
+                                                      : "visible must be 0 or 1, true or false",
                              field->text);
     *visible = (number != 0) != reader->columns.occluded;
     return true;
@@ -181,12 +182,13 @@ static bool parse_row(struct reader *reader, const struct grrl_csv_field *fields
     const struct grrl_csv_field *point = &fields[place[GRRL_COLUMN_POINT]];
     long long number;
     if (!parse_whole(reader, frame, LLONG_MIN + 1, LLONG_MAX, &row->frame))
-        return grrl_csv_fail(&reader->csv, frame->column,
-                             "a frame is a whole number; count the times of a file in seconds",
-                             frame->text);
+        return grrl_csv_fail(
+            &reader->csv, frame->column,
+            "a frame must be a whole number; number the frames if the file has times in seconds",
+            frame->text);
     if (!parse_whole(reader, point, INT32_MIN, INT32_MAX, &number))
-        return grrl_csv_fail(&reader->csv, point->column, "a point is a whole number of 32 bits",
-                             point->text);
+        return grrl_csv_fail(&reader->csv, point->column,
+                             "a point must be a whole number of 32 bits", point->text);
     *row = (struct row){row->frame, (int32_t)number, 0.0f, 0.0f, true, reader->csv.line};
     if (place[GRRL_COLUMN_VISIBLE] != GRRL_COLUMN_ABSENT &&
         !parse_visible(reader, &fields[place[GRRL_COLUMN_VISIBLE]], &row->visible))
@@ -262,16 +264,17 @@ static bool check_twice(struct reader *reader)
         if (a->frame == b->frame && a->point == b->point) {
             char what[160];
             reader->csv.line = b->line;
-            (void)snprintf(what, sizeof what,
-                           "point %d of frame %lld stands in line %zu already; once is right",
-                           (int)b->point, b->frame, a->line);
+            (void)snprintf(
+                what, sizeof what,
+                "point %d of frame %lld is already in line %zu; it must be there only once",
+                (int)b->point, b->frame, a->line);
             return grrl_csv_fail(&reader->csv, 1, what, "");
         }
     }
     return true;
 }
 
-/* Rows in order become frames; a frame of which nothing is visible stays as an empty one. */
+/* Turns sorted rows into frames; a frame without visible points stays as an empty one. */
 static bool build(struct reader *reader, struct grrl_tracks *tracks)
 {
     size_t n = reader->n_rows;

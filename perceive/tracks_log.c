@@ -1,7 +1,7 @@
 /*
- * tracks_log.c: one trial of an LCM log becomes a recording.
+ * tracks_log.c: turns one trial of an LCM log into a recording.
  *
- * The log is read twice: first to see whose messages are in it, then to take those of one session.
+ * The log is read twice: first to find which sessions are in it, then to read the messages of one.
  */
 #include "tracks.h"
 
@@ -14,13 +14,13 @@
 struct session {
     int64_t id;
     size_t n_messages;
-    size_t n_turns; /* how often it began, or began again behind another */
+    size_t n_turns; /* how often it started, or resumed after another session */
     bool has_wanted;
 };
 
-/* Whose messages are in a log. */
+/* The sessions in a log. */
 struct survey {
-    int32_t wanted; /* trial, 0: any */
+    int32_t wanted; /* trial; 0: any */
     struct session *session;
     size_t n;
     size_t capacity;
@@ -29,21 +29,21 @@ struct survey {
     struct grrl_wire_why why;
 };
 
-/* Where a log's messages go: a recording that grows. */
+/* Collects the messages of a log into a growing recording. */
 struct collector {
     struct grrl_tracks *tracks;
     size_t points_capacity;
     size_t frames_capacity;
-    int32_t wanted; /* trial, 0: the last */
+    int32_t wanted; /* trial; 0: the last */
     int64_t session;
-    int64_t seq;  /* of the last frame taken; a lock-step sender repeats frames */
-    bool in_it;   /* the last message of the session was of the recording */
+    int64_t seq;  /* of the last frame taken; a sender in lock step repeats frames */
+    bool in_it;   /* the last message of the session belongs to the recording */
     bool damaged; /* since the last message of the session */
     int32_t ended_trial;
     bool tells_of_trials;
 };
 
-/* --- whose messages there are ----------------------------------------------------------------- */
+/* --- the sessions ----------------------------------------------------------------------------- */
 
 static struct session *find_session(struct survey *survey, int64_t id)
 {
@@ -76,7 +76,7 @@ static bool survey_points(struct survey *survey, const grrl_points_t *message)
     return true;
 }
 
-/* The session to read; NULL: none has the trial. */
+/* The session to read; NULL: no session has the trial. */
 static const struct session *choose_session(const struct survey *survey, bool *interleaved)
 {
     const struct session *last = NULL;
@@ -96,7 +96,7 @@ static const struct session *choose_session(const struct survey *survey, bool *i
 
 /* --- the recording ---------------------------------------------------------------------------- */
 
-/* Makes room for `capacity` items; false: the array is as it was. */
+/* Grows the array to `capacity` items; false: it is unchanged. */
 static bool widen(void **array, size_t item, size_t capacity)
 {
     void *grown = realloc(*array, item * capacity);
@@ -133,7 +133,7 @@ static bool make_room(struct collector *to, size_t points)
     return true;
 }
 
-/* A new trial begins a new recording; what was kept before goes. */
+/* A new trial starts a new recording; the earlier one is discarded. */
 static void follow_trial(struct collector *to, const grrl_points_t *message)
 {
     struct grrl_tracks *tracks = to->tracks;
@@ -210,9 +210,9 @@ static void note_damage(struct collector *to, const struct grrl_log_damage *dama
     to->damaged = true;
 }
 
-/* --- both readings ---------------------------------------------------------------------------- */
+/* --- both passes ------------------------------------------------------------------------------ */
 
-/* Reads the log for the survey, or for the collector if there is one. */
+/* Reads the log into the collector, or into the survey if there is no collector. */
 static bool read_events(const char *path, struct survey *survey, struct collector *to,
                         struct grrl_tracks_error *error)
 {
@@ -251,15 +251,15 @@ static void describe_failure(const struct survey *survey, const char *path,
 {
     if (survey->n > 0)
         (void)snprintf(error->text, sizeof error->text,
-                       "%.200s: no points of trial %d; leave --trial away for the last one", path,
+                       "%.200s: no points of trial %d; omit --trial to read the last one", path,
                        (int)survey->wanted);
     else if (survey->refused > 0)
         (void)snprintf(error->text, sizeof error->text,
-                       "%.200s: not one of %u messages on %s is whole: %.120s", path,
+                       "%.200s: none of the %u messages on %s is intact: %.120s", path,
                        (unsigned)survey->refused, GRRL_CHANNEL_POINTS, survey->why.text);
     else
         (void)snprintf(error->text, sizeof error->text,
-                       "%.200s: an LCM log with messages on %s is needed, this has none", path,
+                       "%.200s: no messages on %s; an LCM log with such messages is needed", path,
                        GRRL_CHANNEL_POINTS);
 }
 

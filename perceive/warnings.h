@@ -1,4 +1,4 @@
-/* warnings.h: what makes an answer doubtful, for standard error and for the JSON. */
+/* warnings.h: warnings about a doubtful answer, for standard error and the JSON. */
 #ifndef GRRL_PERCEIVE_WARNINGS_H
 #define GRRL_PERCEIVE_WARNINGS_H
 
@@ -6,13 +6,13 @@
 
 enum { GRRL_WARNINGS_MAX = 16 };
 
-/* Begin with all zero. The texts need no escaping in JSON. */
+/* Initialise with zeros. The texts need no escaping in JSON. */
 struct grrl_warnings {
     unsigned n;
     char text[GRRL_WARNINGS_MAX][320];
 };
 
-/* Adds one; beyond GRRL_WARNINGS_MAX it is not kept. */
+/* Adds a warning; those beyond GRRL_WARNINGS_MAX are dropped. */
 __attribute__((format(printf, 2, 3))) void grrl_warn(struct grrl_warnings *warnings,
                                                      const char *format, ...);
 

@@ -49,10 +49,15 @@ inline Vec2 direction(double angle)
     return {std::cos(angle), std::sin(angle)};
 }
 
+/* axis: the direction of the angle to rotate by */
+inline Vec2 rotate(Vec2 v, Vec2 axis)
+{
+    return {axis.x * v.x - axis.y * v.y, axis.y * v.x + axis.x * v.y};
+}
+
 inline Vec2 rotate(Vec2 v, double angle)
 {
-    Vec2 d = direction(angle);
-    return {d.x * v.x - d.y * v.y, d.y * v.x + d.x * v.y};
+    return rotate(v, direction(angle));
 }
 
 /* Wraps an angle into (-pi, pi]. */

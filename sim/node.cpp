@@ -1,8 +1,6 @@
 /* The course of a trial as supervisor, tracker and robot see it, and incoming messages. */
 #include "node.hpp"
 
-#include <stdexcept>
-
 #include "adapter.hpp"
 #include "grrl/base/settling.h"
 #include "structure.hpp"
@@ -14,7 +12,8 @@ namespace
 {
 
 constexpr int64_t silence_us = 1000000;
-constexpr int max_retries = 10; /* at a scene in which the agent finds nothing to push */
+constexpr size_t most_in_burst = 16; /* fit the receive buffer of any socket */
+constexpr int max_retries = 10;      /* at a scene in which the agent finds nothing to push */
 
 int8_t reason_on_the_wire(PushReason reason)
 {
@@ -40,7 +39,8 @@ PushCommand push_of(const grrl_push_command_t &c)
 } // namespace
 
 Node::Node(lcm_t *lcm, NodeConfig config)
-    : lcm_(lcm), config_(std::move(config)), supervisor_(visible_structure(config_.object))
+    : lcm_(lcm), config_(std::move(config)), subscriptions_(lcm),
+      supervisor_(visible_structure(config_.object))
 {
     grrl_wire_bind_points(&points_);
     agent_heard_us_ = config_.now_us();
@@ -49,12 +49,6 @@ Node::Node(lcm_t *lcm, NodeConfig config)
     subscribe(GRRL_CHANNEL_DECISION, receive<&Node::on_decision>);
     subscribe(GRRL_CHANNEL_AGENT_STATUS, receive<&Node::on_agent_status>);
     begin_trial();
-}
-
-Node::~Node()
-{
-    for (lcm_subscription_t *subscription : subscriptions_)
-        (void)lcm_unsubscribe(lcm_, subscription);
 }
 
 template <void (Node::*handler)(const lcm_recv_buf_t &)>
@@ -68,12 +62,8 @@ void Node::receive(const lcm_recv_buf_t *buffer, const char *channel, void *user
 
 void Node::subscribe(const char *channel, lcm_msg_handler_t handler)
 {
-    lcm_subscription_t *subscription = lcm_subscribe(lcm_, channel, handler, this);
-    if (subscription == nullptr)
-        throw std::runtime_error(std::string("LCM refused the subscription to ") + channel);
     /* 0 is unbounded; LCM's default of 30 silently drops the newest message. */
-    (void)lcm_subscription_set_queue_capacity(subscription, 0);
-    subscriptions_.push_back(subscription);
+    (void)lcm_subscription_set_queue_capacity(subscriptions_.add(channel, handler, this), 0);
 }
 
 /* Reports the first malformed message and only counts later ones. */
@@ -167,6 +157,7 @@ void Node::begin_trial()
     rest_frames_ = 0;
     retries_ = 0;
     ack_cmd_seq_ = 0;
+    trial_seq_ = seq_;
     command_ = {};
     decision_ = {};
     status_ = {};
@@ -305,11 +296,21 @@ void Node::set_push_state(int8_t state, int8_t reason)
     publish_push_status();
 }
 
-/* In lock-step the next frame is due once the last one was answered. */
+/* In lock-step the next frames are due once the last one was answered. */
 void Node::advance()
 {
     if (!config_.real_time && frames_flow())
-        send_frame();
+        send_burst();
+}
+
+/* What moves does not depend on the agent until it has settled: frames go out together, and only
+ * the last one asks for an answer. The first of a trial goes alone, so that the agent knows where
+ * the trial begins; from there it takes frames in order or not at all. */
+void Node::send_burst()
+{
+    burst_.clear();
+    while (send_frame())
+        continue;
 }
 
 /* Advances the world by one frame; returns the phase to report. */
@@ -330,21 +331,29 @@ int8_t Node::advance_world()
     return GRRL_POINTS_T_SETTLED;
 }
 
-void Node::send_frame()
+/* Returns whether the next one follows at once. */
+bool Node::send_frame()
 {
     grrl_points_t &points = points_.message;
     points.phase = advance_world();
-    points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME : GRRL_POINTS_T_LOCK_STEP;
+    bool more = !config_.real_time && config_.camera == nullptr && seq_ > trial_seq_ &&
+                phase_ != Phase::DECIDING && burst_.size() + 1 < most_in_burst;
+    points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME
+                  : more            ? GRRL_POINTS_T_MORE
+                                    : GRRL_POINTS_T_LOCK_STEP;
     points.session_id = config_.session_id;
     points.seq = ++seq_;
     points.trial_id = trial_id_;
     points.ack_cmd_seq = ack_cmd_seq_;
     points.agent_session_id = agent_session_id_;
-    if (config_.camera != nullptr)
-        return take_picture();
+    if (config_.camera != nullptr) {
+        take_picture();
+        return false;
+    }
     world_->observe(frame_);
     points.n_points = copy_points(frame_, GRRL_WIRE_MAX_POINTS, points.id, points.x, points.y);
     publish_frame();
+    return more;
 }
 
 /* What would have stood with the points stands with the picture. */

@@ -18,6 +18,7 @@
 #include <lcm/lcm.h>
 
 #include "camera.hpp"
+#include "subscriptions.hpp"
 #include "supervisor.hpp"
 #include "wire.h"
 #include "world.hpp"
@@ -56,7 +57,6 @@ class Node
 public:
     /* Throws std::runtime_error if LCM refuses a subscription. */
     Node(lcm_t *lcm, NodeConfig config);
-    ~Node();
     Node(const Node &) = delete;
     Node &operator=(const Node &) = delete;
 
@@ -111,7 +111,8 @@ private:
     void advance();
     void repeat_settling();
     int8_t advance_world();
-    void send_frame();
+    bool send_frame();
+    void send_burst();
     void take_picture();
     void set_push_state(int8_t state, int8_t reason);
 
@@ -120,6 +121,7 @@ private:
     void publish_frame();
     void publish_picture();
     void publish_points();
+    void repeat_burst();
     void publish_push_status();
     void tick_lock_step(int64_t now);
     void tick_real_time(int64_t now);
@@ -128,7 +130,7 @@ private:
 
     lcm_t *lcm_;
     NodeConfig config_;
-    std::vector<lcm_subscription_t *> subscriptions_;
+    grrl_lcm::Subscriptions subscriptions_;
     Supervisor supervisor_;
     std::unique_ptr<World> world_;
 
@@ -140,6 +142,8 @@ private:
     int retries_ = 0; /* further frames since the last push */
     int32_t ack_cmd_seq_ = 0;
     int64_t seq_ = 0;
+    int64_t trial_seq_ = 0;                   /* the frame before the trial's first */
+    std::vector<std::vector<uint8_t>> burst_; /* lock-step: frames sent since the last answer */
 
     grrl_trial_t trial_{};
     grrl_wire_points points_{};

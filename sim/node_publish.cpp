@@ -47,8 +47,16 @@ void Node::publish_points()
 {
     grrl_wire_why why;
     points_.message.utime = config_.now_us();
-    publish(GRRL_CHANNEL_POINTS, bytes_,
-            grrl_wire_encode_points(&points_.message, GRRL_WIRE_MAX_BYTES, bytes_, &why), why);
+    int size = grrl_wire_encode_points(&points_.message, GRRL_WIRE_MAX_BYTES, bytes_, &why);
+    if (size >= 0 && !config_.real_time)
+        burst_.emplace_back(bytes_, bytes_ + size);
+    publish(GRRL_CHANNEL_POINTS, bytes_, size, why);
+}
+
+void Node::repeat_burst()
+{
+    for (const std::vector<uint8_t> &frame : burst_)
+        publish(GRRL_CHANNEL_POINTS, frame.data(), static_cast<int>(frame.size()), {});
 }
 
 void Node::publish_picture()
@@ -90,8 +98,12 @@ void Node::tick_lock_step(int64_t now)
     if (now - sent_us_ < repeat_us)
         return;
     publish_trial();
-    if (frames_flow())
+    if (!frames_flow())
+        return;
+    if (config_.camera != nullptr)
         publish_frame();
+    else
+        repeat_burst();
 }
 
 void Node::tick_real_time(int64_t now)

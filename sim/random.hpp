@@ -35,13 +35,14 @@ public:
     }
 
     /* Mean 0, variance 1: a sum of twelve uniforms. Unlike Box-Muller it is the same on every
-     * machine. */
+     * machine. Summed as integers of 2^-24, as uniform() draws them: exact, so the order does not
+     * matter. */
     double normal()
     {
-        double sum = -6.0;
+        uint32_t sum = 0;
         for (int i = 0; i < 12; i++)
-            sum += uniform();
-        return sum;
+            sum += grrl_random_next(&state_) >> 8;
+        return static_cast<double>(sum) * (1.0 / 16777216.0) - 6.0;
     }
 
     template <typename T> void shuffle(std::vector<T> &items)

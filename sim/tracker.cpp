@@ -12,6 +12,27 @@ constexpr double edge_m = 0.002;             /* distance of features from the ed
 constexpr double background_margin_m = 0.01; /* distance of background features from the object */
 constexpr double background_distance_m = 0.05;
 
+struct Circle {
+    Vec2 middle;
+    double radius2 = 0.0;
+
+    bool contains(Vec2 point) const { return dot(point - middle, point - middle) <= radius2; }
+};
+
+/* Most of the table lies outside it, so that no link needs to be looked at. */
+Circle circle_around(const std::vector<LinkSpec> &links, const std::vector<Pose> &poses)
+{
+    Circle circle;
+    for (const Pose &pose : poses)
+        circle.middle = circle.middle + (1.0 / static_cast<double>(poses.size())) * pose.position;
+    for (size_t i = 0; i < links.size(); i++) {
+        double radius = length(poses[i].position - circle.middle) + links[i].half_length_m +
+                        links[i].half_width_m;
+        circle.radius2 = std::max(circle.radius2, radius * radius);
+    }
+    return circle;
+}
+
 /* Draws a point at least `apart` from the others; if it finds none, the most distant one tried. */
 template <typename Draw, typename Apart> Vec2 spread_point(Draw draw, Apart distance, double apart)
 {
@@ -118,11 +139,21 @@ Vec2 Tracker::true_position(uint32_t id, const std::vector<Pose> &poses) const
 
 void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &frame) const
 {
-    frame.features.clear();
+    const Circle object = circle_around(links_, poses);
+    std::vector<Vec2> axis; /* of each link: one sine and cosine for all its features */
+    for (const Pose &pose : poses)
+        axis.push_back(direction(pose.angle));
+    size_t n = 0;
+    frame.features.resize(features_.size());
     for (uint32_t id = 0; id < features_.size(); id++) {
-        Vec2 point = true_position(id, poses);
-        if (features_[id].link < 0 && covered(point, poses, 0.0))
+        const Feature &feature = features_[id];
+        Vec2 point = feature.place_m;
+        if (feature.link >= 0) {
+            size_t link = static_cast<size_t>(feature.link);
+            point = poses[link].position + rotate(point, axis[link]);
+        } else if (object.contains(point) && covered(point, poses, 0.0)) {
             continue;
+        }
         if (params_.dropout_probability > 0.0 && noise.uniform() < params_.dropout_probability)
             continue;
         if (params_.outlier_probability > 0.0 && noise.uniform() < params_.outlier_probability) {
@@ -131,8 +162,9 @@ void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &fram
         }
         double x = point.x + params_.noise_sigma_m * noise.normal();
         double y = point.y + params_.noise_sigma_m * noise.normal();
-        frame.features.push_back({id, x, y});
+        frame.features[n++] = {id, x, y};
     }
+    frame.features.resize(n);
 }
 
 } // namespace grrl_sim

@@ -15,11 +15,11 @@ namespace
 
 constexpr int steps_per_frame = 4;
 constexpr double back_off_step_m = 0.005;
-constexpr double back_off_most_m = 0.3;
+constexpr double max_back_off_m = 0.3;
 constexpr double landing_clearance_m = 0.001;
 constexpr double blocked_after_s = 0.3;
 constexpr double at_rest_m_s = 0.0005;
-constexpr double settle_most_s = 1.0;
+constexpr double max_settle_s = 1.0;
 
 enum class Phase { REST, PUSHING, SETTLING };
 
@@ -106,12 +106,12 @@ void World::Impl::start_push()
     Vec2 from = command.start_m + offset * Vec2{-along.y, along.x};
     std::vector<Pose> poses = physics.poses();
     double back = 0.0;
-    while (back <= back_off_most_m && !free_for_finger(from - back * along, poses))
+    while (back <= max_back_off_m && !free_for_finger(from - back * along, poses))
         back += back_off_step_m;
     result = PushResult{};
     result.from_m = from - back * along;
     result.to_m = result.from_m;
-    if (back > back_off_most_m)
+    if (back > max_back_off_m)
         return finish(PushReason::BLOCKED);
     line_m = length(line) + back;
     progress_m = 0.0;
@@ -163,7 +163,7 @@ void World::Impl::step()
         check_finger();
     } else {
         settling_s += step_s;
-        if (physics.greatest_speed() < at_rest_m_s || settling_s >= settle_most_s) {
+        if (physics.greatest_speed() < at_rest_m_s || settling_s >= max_settle_s) {
             physics.stop_links();
             phase = Phase::REST;
         }

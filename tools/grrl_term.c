@@ -50,7 +50,7 @@ static const struct grrl_program program = {
              "  x & y                        and\n"
              "  A(x, 45)                     an action: push link x from 45 degrees\n\n"
              "Exit status: 0 success, 1 no match or an error in a term, 2 wrong usage.\n",
-    .most_arguments = 4,
+    .max_arguments = 4,
     .arguments = "one term too many",
 };
 

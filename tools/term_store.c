@@ -26,7 +26,8 @@ static bool load(const char *path, struct grrl_case_base *base)
         return false;
     }
     const struct grrl_io io = {.context = file, .read = read_bytes};
-    enum grrl_status status = grrl_cases_load(base, &io);
+    uint32_t lost;
+    enum grrl_status status = grrl_cases_load(base, &io, &lost);
     bool more = status == GRRL_OK && fgetc(file) != EOF;
     (void)fclose(file);
     if (status == GRRL_OK && !more)

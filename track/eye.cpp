@@ -20,8 +20,8 @@ const cv::Size window(15, 15);
 constexpr float forward_backward_px = 0.7f;
 constexpr float least_correlation = 0.8f;
 constexpr float least_share = 0.5f;
-constexpr float most_sd_px = 0.15f;
-constexpr float most_sparse_sd_px = 0.3f;
+constexpr float max_sd_px = 0.15f;
+constexpr float max_sparse_sd_px = 0.3f;
 constexpr float regained_correlation = 0.88f;
 constexpr float agree_px = 0.4f; /* of a neighbour's word, and more with its distance .. */
 constexpr float agree_rad = 0.012f;
@@ -34,7 +34,7 @@ constexpr size_t still_outliers = 2;
 constexpr int least_still_frames = 4;
 constexpr int judging_frame = 8; /* of a rest */
 constexpr int birth_frame = 3;
-constexpr int most_doubts = 2;
+constexpr int max_doubts = 2;
 constexpr float least_kept = 0.4f;
 constexpr float tool_margin_px = Patch::half - 2.0f;
 
@@ -114,7 +114,7 @@ void Eye::follow(const View &view)
 
 bool Eye::accept(Feature &feature, const PatchFit &fit)
 {
-    float sd_px = feature.sparse ? most_sparse_sd_px : most_sd_px;
+    float sd_px = feature.sparse ? max_sparse_sd_px : max_sd_px;
     feature.found = fit.good && fit.correlation >= least_correlation && fit.share >= least_share &&
                     fit.sd_px <= sd_px;
     if (feature.found)
@@ -252,7 +252,7 @@ void Eye::use_rest()
         feature.doubts = feature.agrees ? feature.doubts : feature.doubts + 1;
         if (feature.agrees)
             feature.patch.judge_pixels();
-        if (feature.doubts >= most_doubts || feature.patch.kept() < least_kept) {
+        if (feature.doubts >= max_doubts || feature.patch.kept() < least_kept) {
             feature.given_up = true;
             feature.found = false;
         }

@@ -19,7 +19,7 @@ constexpr int edge_px = Patch::half + 4;
 constexpr float strong_floor = 5.0f;
 constexpr float weak_floor = 0.5f;
 constexpr size_t reference_rank = 20; /* of the corners, as the best: some are accidents */
-constexpr size_t most_neighbours = 8;
+constexpr size_t max_neighbours = 8;
 constexpr float neighbour_reach_px = 60.0f;
 
 struct Corner {
@@ -95,12 +95,12 @@ void Eye::give_birth(const View &view)
     }
     size_t first = features_.size();
     for (const Corner &corner : corners) {
-        if (followed >= config_.most_points || ids() >= config_.most_ids)
+        if (followed >= config_.max_points || ids() >= config_.max_ids)
             break;
         bool object = view.object_mask.empty() ||
                       view.object_mask.at<uchar>(cvRound(corner.at.y), cvRound(corner.at.x)) != 0;
         bool weak = corner.strength < strong || !object;
-        if (weak && sparse >= config_.most_sparse)
+        if (weak && sparse >= config_.max_sparse)
             continue;
         if (hidden(view, corner.at.x, corner.at.y) ||
             !place_free(corner.at, weak ? config_.sparse_spacing_px : config_.spacing_px))
@@ -133,10 +133,10 @@ void Eye::introduce(size_t first)
         }
         std::sort(near.begin(), near.end());
         for (const auto &[apart, k] : near) {
-            if (features_[i].neighbours.size() < most_neighbours)
+            if (features_[i].neighbours.size() < max_neighbours)
                 features_[i].neighbours.push_back(
                     {k, inverse(features_[k].pose) * features_[i].pose});
-            if (k < first && features_[k].neighbours.size() < most_neighbours)
+            if (k < first && features_[k].neighbours.size() < max_neighbours)
                 features_[k].neighbours.push_back(
                     {i, inverse(features_[i].pose) * features_[k].pose});
         }

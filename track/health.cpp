@@ -17,7 +17,7 @@ constexpr double least_rate = 8.0;
 constexpr int64_t rate_window_us = 3000000;
 constexpr double dark_grey = 25.0;
 constexpr double bright_grey = 235.0;
-constexpr double most_blur = 0.8;
+constexpr double max_blur = 0.8;
 constexpr double quantile = 0.995; /* of the slopes */
 constexpr size_t few_points = 12;
 
@@ -106,7 +106,7 @@ void Health::check_picture(const cv::Mat &picture)
         once("bright", with("the picture is glaring, mean grey level %.0f of 255: less light, or a "
                             "shorter exposure",
                             grey));
-    else if (blur > most_blur)
+    else if (blur > max_blur)
         once("blur", with("the picture is blurred (%.2f, sharp is below 0.8): focus the lens, and "
                           "keep the camera still",
                           blur));

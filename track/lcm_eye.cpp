@@ -1,8 +1,6 @@
 /* Takes pictures, tool and trial from messages, and sends points. */
 #include "lcm_eye.hpp"
 
-#include <stdexcept>
-
 #include <opencv2/imgcodecs.hpp>
 
 namespace grrl_track
@@ -46,33 +44,19 @@ Motion motion_of(int8_t phase)
 
 LcmEye::LcmEye(lcm_t *lcm, std::function<int64_t()> now_us,
                std::function<void(const std::string &)> tell)
-    : lcm_(lcm), now_us_(std::move(now_us)), tell_(std::move(tell)),
+    : lcm_(lcm), now_us_(std::move(now_us)), tell_(std::move(tell)), subscriptions_(lcm),
       incoming_(std::make_unique<grrl_wire_image>()), image_(std::make_unique<grrl_wire_image>())
 {
     grrl_wire_bind_points(&points_);
-    subscribe(GRRL_CHANNEL_IMAGE, receive<&LcmEye::on_image>);
-    subscribe(GRRL_CHANNEL_PUSH_STATUS, receive<&LcmEye::on_push_status>);
-    subscribe(GRRL_CHANNEL_TRIAL, receive<&LcmEye::on_trial>);
-}
-
-LcmEye::~LcmEye()
-{
-    for (lcm_subscription_t *subscription : subscriptions_)
-        (void)lcm_unsubscribe(lcm_, subscription);
+    (void)subscriptions_.add(GRRL_CHANNEL_IMAGE, receive<&LcmEye::on_image>, this);
+    (void)subscriptions_.add(GRRL_CHANNEL_PUSH_STATUS, receive<&LcmEye::on_push_status>, this);
+    (void)subscriptions_.add(GRRL_CHANNEL_TRIAL, receive<&LcmEye::on_trial>, this);
 }
 
 template <void (LcmEye::*handler)(const lcm_recv_buf_t &)>
 void LcmEye::receive(const lcm_recv_buf_t *buffer, const char *, void *user)
 {
     (static_cast<LcmEye *>(user)->*handler)(*buffer);
-}
-
-void LcmEye::subscribe(const char *channel, lcm_msg_handler_t handler)
-{
-    lcm_subscription_t *subscription = lcm_subscribe(lcm_, channel, handler, this);
-    if (subscription == nullptr)
-        throw std::runtime_error(std::string("LCM refuses to subscribe to ") + channel);
-    subscriptions_.push_back(subscription);
 }
 
 void LcmEye::tell_once(bool &told, const std::string &text)

@@ -18,6 +18,7 @@
 #include <lcm/lcm.h>
 
 #include "eye.hpp"
+#include "subscriptions.hpp"
 #include "table.hpp"
 #include "wire.h"
 
@@ -30,7 +31,6 @@ public:
     /* Throws std::runtime_error if LCM refuses a subscription. */
     LcmEye(lcm_t *lcm, std::function<int64_t()> now_us,
            std::function<void(const std::string &)> tell);
-    ~LcmEye();
     LcmEye(const LcmEye &) = delete;
     LcmEye &operator=(const LcmEye &) = delete;
 
@@ -52,7 +52,6 @@ public:
 private:
     template <void (LcmEye::*handler)(const lcm_recv_buf_t &)>
     static void receive(const lcm_recv_buf_t *buffer, const char *channel, void *user);
-    void subscribe(const char *channel, lcm_msg_handler_t handler);
     void on_image(const lcm_recv_buf_t &buffer);
     void on_push_status(const lcm_recv_buf_t &buffer);
     void on_trial(const lcm_recv_buf_t &buffer);
@@ -64,7 +63,7 @@ private:
     lcm_t *lcm_;
     std::function<int64_t()> now_us_;
     std::function<void(const std::string &)> tell_;
-    std::vector<lcm_subscription_t *> subscriptions_;
+    grrl_lcm::Subscriptions subscriptions_;
     std::unique_ptr<grrl_wire_image> incoming_;
     std::unique_ptr<grrl_wire_image> image_; /* looked at next, or last */
     bool pending_ = false;

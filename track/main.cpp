@@ -1,7 +1,7 @@
 /*
  * grrl-track: points from pictures, for grrl-perceive and grrl-agent.
  *
- * Exit status: 0 fine, 1 trouble, 2 wrong command line.
+ * Exit status: 0 fine, 1 failed, 2 wrong command line.
  */
 #include <chrono>
 #include <csignal>

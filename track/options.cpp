@@ -17,7 +17,7 @@ const grrl_program program = {
     "Follows features through the pictures of a camera that stands still above a table.\n",
     "Without --scale, --points or --calibration positions are in pixels, y down.\n"
     "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
-    "Exit status: 0 fine, or stopped by a signal; 1 trouble; 2 wrong command line.\n",
+    "Exit status: 0 fine, or stopped by a signal; 1 failed; 2 wrong command line.\n",
     1,
     "one file or folder only",
 };

@@ -11,7 +11,7 @@ namespace
 {
 
 constexpr float spread_px = 4.5f; /* of the weights around the centre */
-constexpr int most_steps = 8;
+constexpr int max_steps = 8;
 constexpr float converged_px = 0.01f;
 constexpr float farthest_px = 3.0f; /* from the guess */
 constexpr float farthest_rad = 0.3f;
@@ -216,7 +216,7 @@ PatchFit Patch::find(const cv::Mat &smooth, const PatchPose &guess)
 {
     PatchFit fit;
     PatchPose pose = guess;
-    for (int step = 0; step < most_steps; step++) {
+    for (int step = 0; step < max_steps; step++) {
         if (!sample(smooth, pose))
             return fit;
         bool robust = step > 0; /* the gain is not known before */

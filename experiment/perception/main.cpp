@@ -1,7 +1,7 @@
 /*
  * grrl-evaluate: how good perception is, measured.
  *
- * Exit status: 0 fine, 1 trouble, 2 wrong command line.
+ * Exit status: 0 fine, 1 failed, 2 wrong command line.
  */
 #include <atomic>
 #include <cerrno>
@@ -21,7 +21,7 @@ using grrl_experiment::Progress;
 namespace
 {
 
-enum { EXIT_FINE = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
+enum { EXIT_FINE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 /* All trials of all groups, by as many threads as there are jobs; a trial depends on its seed
  * alone. */
@@ -99,7 +99,7 @@ int report(const Options &options, std::vector<Group> groups)
             "grrl-evaluate: %s: gnuplot failed; is it installed, and can the file be "
             "written?\n",
             options.svg.c_str());
-    return good && drawn ? EXIT_FINE : EXIT_TROUBLE;
+    return good && drawn ? EXIT_FINE : EXIT_FAILED;
 }
 
 } // namespace

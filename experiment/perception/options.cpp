@@ -30,6 +30,14 @@ const char *take_noise(void *context, const char *text)
 
 } // namespace
 
+grrl_program describe_study(const char *usage, const char *intro, std::string &outro)
+{
+    outro += "The same seed gives the same figures, whatever --jobs is.\n"
+             "Exit status: 0 fine; 1 failed; 2 wrong command line.\n";
+    return {"grrl-evaluate", usage, intro,
+            outro.c_str(),   1,     "there are two studies: perception and recordings"};
+}
+
 grrl_options_result parse_options(int argc, char **argv, Options &options)
 {
     Options &o = options;
@@ -56,24 +64,17 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
         grrl_option_text("svg", "FILE", "draw the figures (needs gnuplot)", &o.svg),
         grrl_option_flag("quiet", "no progress", &o.quiet),
     };
-    const std::string outro = "Objects: " + object_names() +
-                              "\nThe same seed gives the same figures, whatever --jobs is.\n"
-                              "Exit status: 0 fine; 1 trouble; 2 wrong command line.\n";
-    const grrl_program program = {
-        "grrl-evaluate",
+    std::string outro = "Objects: " + object_names() + "\n";
+    const grrl_program program = describe_study(
         "grrl-evaluate perception [OPTION]...\n       grrl-evaluate recordings --help",
         "Measures perception on simulated objects under random pushes, against the\n"
         "truth and against the baseline of the paper, in one run.\n",
-        outro.c_str(),
-        1,
-        "there are two studies: perception and recordings",
-    };
+        outro);
     int first = 0;
     grrl_options_result result =
         grrl_options_parse(&program, rows, std::size(rows), argc, argv, &first);
     if (result == GRRL_OPTIONS_RUN && (first == argc || std::string(argv[first]) != "perception"))
-        return grrl_options_wrong(&program,
-                                  "what is to be measured? There are: perception, recordings");
+        return grrl_options_wrong(&program, "no study: name perception or recordings");
     return result;
 }
 

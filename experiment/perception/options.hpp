@@ -26,6 +26,9 @@ struct Options {
 
 grrl_options_result parse_options(int argc, char **argv, Options &options);
 
+/* The program as each of its studies describes it; outro says what the study has to choose from. */
+grrl_program describe_study(const char *usage, const char *intro, std::string &outro);
+
 } // namespace grrl_experiment::perception
 
 #endif

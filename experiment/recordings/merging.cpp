@@ -19,7 +19,7 @@ enum { GROUP = 3, ROUNDS = 3, LEAST_BODY = 4 };
 
 constexpr double pose_numbers = 3.0; /* of a pose in the plane */
 
-constexpr double most_sigmas = 3.0; /* of a distance that does not change */
+constexpr double max_sigmas = 3.0; /* of a distance that does not change */
 
 using Rows = std::vector<size_t>;
 
@@ -81,7 +81,7 @@ double Merging::variation(size_t a, size_t b) const
     if (n < 2.0)
         return HUGE_VAL;
     double sd = std::sqrt(std::max(squares / n - sum / n * sum / n, 0.0)) / sigma_m_;
-    return sd > most_sigmas ? HUGE_VAL : sd + 0.02 * sum / n / sigma_m_;
+    return sd > max_sigmas ? HUGE_VAL : sd + 0.02 * sum / n / sigma_m_;
 }
 
 /* Each track with the two that vary least to it, as long as there are free ones. */

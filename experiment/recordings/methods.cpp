@@ -27,7 +27,7 @@ const char *const method_names[METHODS] = {"ours", "skill", "bic"};
 namespace
 {
 
-enum { PICTURES = 12, MOST_TRACKS = 120 };
+enum { PICTURES = 12, MAX_TRACKS = 120 };
 
 class Clock
 {
@@ -141,12 +141,12 @@ Answer ask_program(const std::string &program, const Recording &recording)
                          file[1], file[2]);
         answer.ms = clock.ms();
         answer.failed = status != 0 || !take_json(read_all(file[1]), answer.estimate);
-        answer.trouble = read_all(file[2]);
+        answer.failure = read_all(file[2]);
         if (status < 0 || status == 127)
-            answer.trouble = cannot_run;
+            answer.failure = cannot_run;
     } else {
         answer.failed = true;
-        answer.trouble = std::string("no temporary file: ") + std::strerror(errno);
+        answer.failure = std::string("no temporary file: ") + std::strerror(errno);
     }
     for (std::FILE *f : file)
         if (f != nullptr)
@@ -154,7 +154,7 @@ Answer ask_program(const std::string &program, const Recording &recording)
     return answer;
 }
 
-Pictures pictures_of(const Recording &recording, int pictures, size_t most_tracks)
+Pictures pictures_of(const Recording &recording, int pictures, size_t max_tracks)
 {
     size_t frames = recording.frames.size();
     std::vector<size_t> chosen;
@@ -164,7 +164,7 @@ Pictures pictures_of(const Recording &recording, int pictures, size_t most_track
             chosen.push_back(frame);
     }
     Pictures result;
-    result.id = longest(recording, chosen, most_tracks);
+    result.id = longest(recording, chosen, max_tracks);
     std::map<int32_t, size_t> row;
     for (size_t i = 0; i < result.id.size(); i++)
         row[result.id[i]] = i;
@@ -182,7 +182,7 @@ Answer ask_skill(const Recording &recording)
 {
     Answer answer;
     Clock clock;
-    Pictures pictures = pictures_of(recording, PICTURES, MOST_TRACKS);
+    Pictures pictures = pictures_of(recording, PICTURES, MAX_TRACKS);
     perception::Baseline baseline(static_cast<int>(pictures.id.size()));
     for (const auto &places : pictures.places) {
         grrl_sim::Frame frame;
@@ -202,7 +202,7 @@ Answer ask_bic(const Recording &recording)
 {
     Answer answer;
     Clock clock;
-    Pictures pictures = pictures_of(recording, PICTURES, MOST_TRACKS);
+    Pictures pictures = pictures_of(recording, PICTURES, MAX_TRACKS);
     double sigma_m = recording.unit == Unit::PX ? 0.002 : 0.0014;
     answer.estimate = merge_by_bic(pictures, sigma_m);
     to_ids(pictures, answer.estimate);

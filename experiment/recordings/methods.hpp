@@ -20,14 +20,14 @@ namespace grrl_experiment::recordings
 enum Method { OURS, SKILL, BIC, METHODS };
 extern const char *const method_names[METHODS];
 
-/* The trouble when the program is not there. */
+/* The failure when the program is not there. */
 constexpr const char *cannot_run = "cannot be run";
 
 struct Answer {
     Estimate estimate; /* by the ids of tracks */
     double ms = 0.0;
-    bool failed = false; /* no answer; trouble says why */
-    std::string trouble;
+    bool failed = false; /* no answer; failure says why */
+    std::string failure;
 };
 
 /* Runs a program in $PATH or by its path: PROGRAM --json --unit UNIT. */
@@ -45,7 +45,7 @@ struct Pictures {
     std::vector<int32_t> id;                /* of each row */
     std::vector<std::vector<Place>> places; /* [picture][row] */
 };
-Pictures pictures_of(const Recording &recording, int pictures, size_t most_tracks);
+Pictures pictures_of(const Recording &recording, int pictures, size_t max_tracks);
 
 } // namespace grrl_experiment::recordings
 

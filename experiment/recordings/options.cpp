@@ -1,6 +1,7 @@
 /* options.cpp: the command line of grrl-evaluate recordings. */
 #include "cli/options.hpp"
 
+#include "perception/options.hpp"
 #include "study.hpp"
 
 namespace grrl_experiment::recordings
@@ -26,22 +27,13 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
         grrl_option_text("write", "FOLDER", "write the recordings, for grrl-perceive", &o.folder),
         grrl_option_flag("quiet", "no progress", &o.quiet),
     };
-    const std::string outro = "Axes and their levels; the first is the usual one:\n" + grid_help() +
-                              "The same seed gives the same figures, whatever --jobs is.\n"
-                              "Exit status: 0 fine; 1 trouble; 2 wrong command line.\n";
-    const grrl_program program = {
-        "grrl-evaluate",
+    std::string outro = "Axes and their levels; the first is the usual one:\n" + grid_help();
+    const grrl_program program = perception::describe_study(
         "grrl-evaluate recordings [OPTION]...",
         "Measures grrl-perceive on synthetic recordings of cameras and trackers, against the\n"
         "truth, the skill of the paper and merging by BIC, in one run.\n",
-        outro.c_str(),
-        1,
-        "there are two studies: perception and recordings",
-    };
-    int first = 0;
-    grrl_options_result result =
-        grrl_options_parse(&program, rows, std::size(rows), argc, argv, &first);
-    return result;
+        outro);
+    return grrl_options_parse(&program, rows, std::size(rows), argc, argv, nullptr);
 }
 
 } // namespace grrl_experiment::recordings

@@ -9,7 +9,7 @@ namespace grrl_experiment::recordings
 namespace
 {
 
-constexpr double most_error = 0.1;     /* of the tracks of a right answer in a wrong body */
+constexpr double max_error = 0.1;      /* of the tracks of a right answer in a wrong body */
 constexpr double least_assigned = 0.5; /* of the tracks of a moving body */
 
 /* How the tracks of each true body lie in the bodies of the answer; the last column is none. */
@@ -85,7 +85,7 @@ public:
             if ((times[b] > 1 && !(b == 0 && in_metres)) || (b > 0 && (times[b] == 0 || !most)))
                 return false;
         }
-        return error() <= most_error;
+        return error() <= max_error;
     }
 
 private:

@@ -19,7 +19,7 @@ namespace grrl_experiment::recordings
 namespace
 {
 
-enum { EXIT_FINE = 0, EXIT_TROUBLE = 1, EXIT_USAGE = 2 };
+enum { EXIT_FINE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
 /* grrl-perceive where it is installed or built, or the one in $PATH. */
 std::string program_beside_us()
@@ -100,7 +100,7 @@ private:
                                   ask_bic(recording)};
         for (int m = 0; m < METHODS; m++)
             result.of[m] = {score(recording, answer[m].estimate), answer[m].ms, answer[m].failed};
-        return answer[OURS].failed && answer[OURS].trouble == cannot_run
+        return answer[OURS].failed && answer[OURS].failure == cannot_run
                    ? program_ + ": cannot be run; see --program"
                    : "";
     }
@@ -118,7 +118,7 @@ private:
 int fail(const std::string &what)
 {
     (void)std::fprintf(stderr, "grrl-evaluate: %s\n", what.c_str());
-    return EXIT_TROUBLE;
+    return EXIT_FAILED;
 }
 
 int report(const Options &options, const std::vector<Result> &results)

@@ -31,3 +31,6 @@ onboard_check(live ${checks}/live.sh ${folder} $<TARGET_FILE:grrl-agent>
               $<TARGET_FILE:grrl-bridge> $<TARGET_FILE:grrl-sim>
               $<TARGET_FILE:grrl-record> $<TARGET_FILE:grrl-replay>)
 set_tests_properties(onboard_live PROPERTIES FIXTURES_REQUIRED onboard_cortex-m4)
+# What the profiles of capacities take, and the example firmware: the table of docs/firmware.md.
+add_test(NAME onboard_profiles COMMAND ${PROJECT_SOURCE_DIR}/tools/profiles --check)
+set_tests_properties(onboard_profiles PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 3600)

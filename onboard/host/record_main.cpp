@@ -17,7 +17,7 @@ using namespace grrl_sim;
 namespace
 {
 
-constexpr int most_pushes = 100;
+constexpr int max_pushes = 100;
 
 struct Run {
     std::FILE *file = nullptr;
@@ -111,7 +111,7 @@ int trial(Run &run, const ObjectSpec &object, uint64_t seed, int32_t number)
     settle(run, world);
     int pushes = 0;
     bool found = false;
-    while (!run.failed && !found && pushes < most_pushes) {
+    while (!run.failed && !found && pushes < max_pushes) {
         if (!send(run, ONBOARD_CHOOSE))
             break; /* no link to push */
         push(run, world);
@@ -146,7 +146,7 @@ int main(int argc, char **argv)
     grrl_options_result parsed = grrl_options_parse(&program, nullptr, 0, argc, argv, &first);
     if (parsed != GRRL_OPTIONS_RUN)
         return parsed;
-    if (argc - first != program.most_arguments)
+    if (argc - first != program.max_arguments)
         return grrl_options_wrong(&program, program.arguments);
     char **arguments = argv + first;
     uint64_t trials = 0;

@@ -16,7 +16,7 @@ static const struct grrl_program program = {
     .intro = "Gives a recording of grrl-record to the controller and prints the hashes of what\n"
              "it estimated, decided and learned.\n",
     .outro = "Exit status: 0 success; 1 the recording is invalid; 2 wrong command line.\n",
-    .most_arguments = 1,
+    .max_arguments = 1,
     .arguments = "give only one recording",
 };
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-enum { SEED = 1, ROUNDS = 100, MOST_FILLING = 20000 };
+enum { SEED = 1, ROUNDS = 100, MAX_FILLING = 20000 };
 
 static struct grrl_random random;
 static struct grrl_model model;
@@ -68,7 +68,7 @@ uint32_t worst_decision(struct onboard_controller *controller, const struct grrl
         return 0;
     make_state(any_links());
     for (int i = 0; type->usage != NULL && type->usage(policy.self).evictions < 1; i++) {
-        if (i == MOST_FILLING)
+        if (i == MAX_FILLING)
             return 0; /* its memory does not fill up, so this measures nothing */
         (void)decide(&policy, any_links(), count);
     }

@@ -1,6 +1,11 @@
 /* model.cpp: what perception believes, as a dictionary of arrays. */
 #include "native.hpp"
 
+#include <tuple>
+
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
 namespace grrl_python
 {
 
@@ -120,6 +125,30 @@ void add_frames(nb::dict &dict, const grrl_model &model)
     dict["body_frame"] = array_of(std::move(frames), {model.n_bodies, size_t{2}, size_t{2}});
 }
 
+/* The term of links and joints that came in a message, each joint as (a, b, type). */
+std::string term_of_structure(const std::vector<int> &numbers, const std::vector<bool> &large,
+                              const std::vector<std::tuple<int, int, int>> &joints)
+{
+    auto model = std::make_unique<grrl_model>();
+    int n = static_cast<int>(numbers.size());
+    if (n > GRRL_MAX_LINKS || large.size() != numbers.size() || joints.size() > GRRL_MAX_JOINTS)
+        throw nb::value_error("term_of_structure: more links or joints than this build knows");
+    for (int number : numbers) {
+        grrl_body &body = model->body[model->n_bodies];
+        body.number = static_cast<uint16_t>(number);
+        body.length_m = large[model->n_bodies++] ? 1.0f : 0.0f;
+    }
+    for (auto [a, b, type] : joints) {
+        if (a < 0 || b < 0 || a >= n || b >= n || a == b || type < 0 || type >= GRRL_JOINT_TYPES)
+            throw nb::value_error("term_of_structure: a joint of a link that is not there");
+        grrl_joint &joint = model->joint[model->n_joints++];
+        joint.a = static_cast<uint8_t>(a);
+        joint.b = static_cast<uint8_t>(b);
+        joint.type = static_cast<uint8_t>(type);
+    }
+    return term_of(*model, 0.5f);
+}
+
 } // namespace
 
 std::string term_of(const grrl_model &model, float large_m)
@@ -190,8 +219,7 @@ void bind_model(nb::module_ &m)
                  return std::make_unique<Frame>(frame_from(id, x_m, y_m));
              }),
              nb::arg("ids"), nb::arg("x"), nb::arg("y"))
-        .def(
-            "__len__", [](const Frame &frame) { return frame.id.size(); })
+        .def("__len__", [](const Frame &frame) { return frame.id.size(); })
         .def_prop_ro(
             "ids", [](const Frame &frame) { return array_of(frame.id, {frame.id.size()}); },
             nb::rv_policy::automatic, "(n,) int32: the number of each point, in ascending order.")
@@ -206,6 +234,8 @@ void bind_model(nb::module_ &m)
             },
             nb::rv_policy::automatic, "(n, 2) float64: positions, metres.")
         .def_ro("time_s", &Frame::time_s, "Seconds since the world began.");
+    m.def("term_of_structure", &term_of_structure, nb::arg("numbers"), nb::arg("large"),
+          nb::arg("joints"));
 }
 
 } // namespace grrl_python

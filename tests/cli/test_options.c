@@ -180,14 +180,14 @@ static void arguments_are_counted(void **state)
     (void)state;
     refused("--quiet extra", "grrl-test: extra: there are no arguments, only options\n"
                              "Try grrl-test --help\n");
-    program.most_arguments = 2;
+    program.max_arguments = 2;
     program.arguments = "two files at most";
     parse("one --quiet -- --two");
     assert_int_equal(result, GRRL_OPTIONS_RUN);
     assert_true(values.quiet);
     assert_int_equal(first, 3); /* of five words */
     refused("one - three --quiet", "grrl-test: three: two files at most\nTry grrl-test --help\n");
-    program.most_arguments = 0;
+    program.max_arguments = 0;
     program.arguments = NULL;
 }
 
@@ -223,20 +223,20 @@ static void help_lists_the_table(void **state)
 static void a_full_table_parses(void **state)
 {
     (void)state;
-    static char names[GRRL_OPTIONS_MOST][16];
-    struct grrl_option rows[GRRL_OPTIONS_MOST];
-    bool flags[GRRL_OPTIONS_MOST] = {false};
-    for (int i = 0; i < GRRL_OPTIONS_MOST; i++) {
+    static char names[GRRL_OPTIONS_MAX][16];
+    struct grrl_option rows[GRRL_OPTIONS_MAX];
+    bool flags[GRRL_OPTIONS_MAX] = {false};
+    for (int i = 0; i < GRRL_OPTIONS_MAX; i++) {
         (void)snprintf(names[i], sizeof names[i], "o%dx", i);
         rows[i] = grrl_option_flag(names[i], "", &flags[i]);
     }
     char last[20];
-    (void)snprintf(last, sizeof last, "--o%dx", GRRL_OPTIONS_MOST - 1);
+    (void)snprintf(last, sizeof last, "--o%dx", GRRL_OPTIONS_MAX - 1);
     char *argv[] = {(char[]){"grrl-test"}, (char[]){"--o0x"}, last, NULL};
-    assert_int_equal(grrl_options_parse(&program, rows, GRRL_OPTIONS_MOST, 3, argv, NULL),
+    assert_int_equal(grrl_options_parse(&program, rows, GRRL_OPTIONS_MAX, 3, argv, NULL),
                      GRRL_OPTIONS_RUN);
-    for (int i = 0; i < GRRL_OPTIONS_MOST; i++)
-        assert_int_equal(flags[i], i == 0 || i == GRRL_OPTIONS_MOST - 1);
+    for (int i = 0; i < GRRL_OPTIONS_MAX; i++)
+        assert_int_equal(flags[i], i == 0 || i == GRRL_OPTIONS_MAX - 1);
 }
 
 int main(void)

@@ -9,8 +9,8 @@ PROGRAM=("$EVALUATE")
 
 expect 0 "^grrl-evaluate $VERSION\$" --version
 expect 0 'Usage: grrl-evaluate perception' --help
-expect 2 'what is to be measured? There are: perception, recordings'
-expect 2 'what is to be measured' learning
+expect 2 'no study: name perception or recordings'
+expect 2 'no study' learning
 expect 2 '--trials 0: must be a whole number' perception --trials 0
 expect 2 '--noise 1;2: must be numbers' perception --noise '1;2'
 expect 2 '--dropout 2: must be a number from 0 to 1' perception --dropout 2

@@ -19,8 +19,8 @@ namespace
 {
 
 constexpr uint32_t capacity = 16;
-constexpr int most_operations = 64;
-constexpr int most_handled = 12;
+constexpr int max_operations = 64;
+constexpr int max_handled = 12;
 
 const char *const channels[] = {GRRL_CHANNEL_POINTS,       GRRL_CHANNEL_TRIAL,
                                 GRRL_CHANNEL_PUSH_STATUS,  GRRL_CHANNEL_PUSH_COMMAND,
@@ -105,7 +105,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     seen.clear();
     start_agent(*agent, lcm);
     auto node = std::make_unique<Node>(lcm, node_config());
-    for (int i = 0; i < most_operations && input.left > 0; i++) {
+    for (int i = 0; i < max_operations && input.left > 0; i++) {
         switch (fuzz_byte(&input) % 4) {
         case 0:
             clock_us += 5000 * fuzz_byte(&input);
@@ -119,7 +119,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         default:
             break;
         }
-        for (int n = 0; n < most_handled && lcm_handle_timeout(lcm, 0) > 0; n++)
+        for (int n = 0; n < max_handled && lcm_handle_timeout(lcm, 0) > 0; n++)
             continue;
         node->tick();
         grrl_agent_tick(agent.get());

@@ -414,15 +414,19 @@ static void save_some(void)
     assert_int_equal(grrl_cases_save(&f.base, &io), GRRL_OK);
 }
 
+/* Bytes of the file's header and of a case, each with its CRC. */
+enum { HEADER = 20 + 4, CASE = 28 };
+
 static void cases_come_back_from_a_file(void **state)
 {
     (void)state;
     save_some();
     struct grrl_case cases[CAPACITY];
     struct grrl_case_base again;
+    uint32_t lost;
     const struct grrl_io io = memory_file_io(&file);
     grrl_cases_init(&again, cases, CAPACITY);
-    assert_int_equal(grrl_cases_load(&again, &io), GRRL_OK);
+    assert_int_equal(grrl_cases_load(&again, &io, &lost), GRRL_OK);
     assert_int_equal(file.at, file.size);
     assert_int_equal(again.n, f.base.n);
     assert_int_equal(again.clock, f.base.clock);
@@ -430,30 +434,45 @@ static void cases_come_back_from_a_file(void **state)
     assert_memory_equal(again.cases, f.base.cases, f.base.n * sizeof f.base.cases[0]);
     grrl_cases_init(&again, cases, f.base.n - 1);
     file.at = 0;
-    assert_int_equal(grrl_cases_load(&again, &io), GRRL_ERR_FULL);
+    assert_int_equal(grrl_cases_load(&again, &io, &lost), GRRL_ERR_FULL);
     assert_int_equal(again.n, 0);
+}
+
+static void a_torn_file_gives_what_was_whole(void **state)
+{
+    (void)state;
+    save_some();
+    uint32_t lost;
+    const struct grrl_io io = memory_file_io(&file);
+    const size_t whole = file.size;
+    const uint32_t total = f.base.n;
+    const size_t cases_at = whole - total * (size_t)CASE;
+    assert_true(total > 1);
+    for (file.size = 0; file.size < whole; ++file.size) {
+        uint32_t n = file.size > cases_at ? (uint32_t)((file.size - cases_at) / CASE) : 0;
+        file.at = 0;
+        assert_int_equal(grrl_cases_load(&f.base, &io, &lost), GRRL_ERR_IO);
+        assert_int_equal(f.base.n, n);
+        assert_int_equal(lost, file.size < HEADER ? 0 : total - n);
+    }
 }
 
 static void a_damaged_file_is_refused(void **state)
 {
     (void)state;
     save_some();
+    uint32_t lost;
     const struct grrl_io io = memory_file_io(&file);
     const size_t whole = file.size;
-    for (file.size = 0; file.size < whole; ++file.size) {
-        file.at = 0;
-        assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_IO);
-        assert_int_equal(f.base.n, 0);
-    }
     for (size_t i = 0; i < whole; i++) {
         file.bytes[i] ^= 0x40;
         file.at = 0;
-        assert_int_not_equal(grrl_cases_load(&f.base, &io), GRRL_OK);
+        assert_int_not_equal(grrl_cases_load(&f.base, &io, &lost), GRRL_OK);
         assert_int_equal(f.base.n, 0);
         file.bytes[i] ^= 0x40;
     }
     file.at = 0;
-    assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_OK);
+    assert_int_equal(grrl_cases_load(&f.base, &io, &lost), GRRL_OK);
 }
 
 /* A whole file of version 1, without a case. */
@@ -465,8 +484,9 @@ static void an_older_file_is_told_from_a_damaged_one(void **state)
     memcpy(file.bytes, older, sizeof older);
     file.size = sizeof older;
     file.at = 0;
+    uint32_t lost;
     const struct grrl_io io = memory_file_io(&file);
-    assert_int_equal(grrl_cases_load(&f.base, &io), GRRL_ERR_VERSION);
+    assert_int_equal(grrl_cases_load(&f.base, &io, &lost), GRRL_ERR_VERSION);
 }
 
 int main(void)
@@ -489,6 +509,7 @@ int main(void)
         cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
         cmocka_unit_test_setup(cases_come_back_from_a_file, set_up),
+        cmocka_unit_test_setup(a_torn_file_gives_what_was_whole, set_up),
         cmocka_unit_test_setup(a_damaged_file_is_refused, set_up),
         cmocka_unit_test_setup(an_older_file_is_told_from_a_damaged_one, set_up),
     };

@@ -42,7 +42,8 @@ static enum grrl_status load(struct fixture *fixture, struct memory_file *from)
 {
     from->at = 0;
     struct grrl_io io = {.context = from, .read = memory_file_read};
-    return grrl_experience_load(&fixture->store, &io);
+    uint32_t lost;
+    return grrl_experience_load(&fixture->store, &io, &lost);
 }
 
 static struct grrl_graph random_graph(struct grrl_random *random)
@@ -158,17 +159,6 @@ static void an_empty_store_is_a_file_too(void **state)
     check_empty(&copy.store);
 }
 
-static void a_file_cut_anywhere_leaves_an_empty_store(void **state)
-{
-    (void)state;
-    size_t whole = file.size;
-    for (size_t size = 0; size < whole; size++) {
-        file.size = size;
-        assert_int_equal(load(&copy, &file), GRRL_ERR_IO);
-        check_empty(&copy.store);
-    }
-}
-
 static void a_torn_file_gives_what_was_whole(void **state)
 {
     (void)state;
@@ -179,7 +169,7 @@ static void a_torn_file_gives_what_was_whole(void **state)
         file.size = size;
         file.at = 0;
         const struct grrl_io io = {.context = &file, .read = memory_file_read};
-        assert_int_equal(grrl_experience_load_torn(&copy.store, &io, &lost), GRRL_ERR_IO);
+        assert_int_equal(grrl_experience_load(&copy.store, &io, &lost), GRRL_ERR_IO);
         check_store(&copy.store);
         size_t records = size + total * (size_t)EXPERIENCE > whole
                              ? (size + total * (size_t)EXPERIENCE - whole) / EXPERIENCE
@@ -203,10 +193,14 @@ static void a_failing_callback_is_told(void **state)
     }
     second.calls_left = records;
     assert_int_equal(save(&original, &second), GRRL_OK);
-    for (int calls = 0; calls < records; calls++) {
+    /* One call reads the header, two each state, one each experience. */
+    int before = 1 + 2 * (int)original.store.n_states;
+    for (int calls = 0; calls < before + (int)original.store.n_experiences; calls++) {
+        int whole = calls - before;
         file.calls_left = calls;
         assert_int_equal(load(&copy, &file), GRRL_ERR_IO);
-        check_empty(&copy.store);
+        check_store(&copy.store);
+        assert_int_equal(copy.store.n_experiences, whole > 0 ? whole : 0);
     }
 }
 
@@ -421,7 +415,6 @@ int main(void)
         cmocka_unit_test_setup(what_was_saved_is_loaded_and_saved_again, set_up),
         cmocka_unit_test_setup(a_loaded_store_goes_on_like_the_first, set_up),
         cmocka_unit_test_setup(an_empty_store_is_a_file_too, set_up),
-        cmocka_unit_test_setup(a_file_cut_anywhere_leaves_an_empty_store, set_up),
         cmocka_unit_test_setup(a_torn_file_gives_what_was_whole, set_up),
         cmocka_unit_test_setup(a_failing_callback_is_told, set_up),
         cmocka_unit_test_setup(no_damaged_byte_goes_unseen, set_up),

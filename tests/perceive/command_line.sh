@@ -84,7 +84,7 @@ expect 2 'picture.PNG: must be a file for SVG' --svg picture.PNG "$WORK/hinge.cs
 expect 0 '^D(lb, R(' --motion "$WORK/hinge_motion.csv" "$WORK/hinge.csv"
 expect 0 '^D(lb, P(' --unit mm --motion "$WORK/slide_motion.csv" "$WORK/slide.csv"
 expect 1 'No such file' --motion "$WORK/no/folder.csv" "$WORK/hinge.csv"
-expect 2 'do not go with --handle' --motion a --handle b
+expect 2 'do not work with --handle' --motion a --handle b
 for kind in hinge slide; do
     awk -F, -v kind=$kind 'function size(v) { return v < 0 ? -v : v }
         NR == 1 { header = $0; next }
@@ -137,7 +137,7 @@ done
 expect 0 'warning: 147 of 2196 positions are exactly (0, 0)' "$WORK/zeros.csv"
 expect 0 '"marked": 147' --json "$WORK/zeros.csv"
 expect 0 'warning: 147 of 2196 positions are empty or NaN' "$WORK/nans.csv"
-expect 0 'positions repeat the last one exactly' "$WORK/frozen.csv"
+expect 0 'positions repeat the previous one exactly' "$WORK/frozen.csv"
 
 # units doubted
 awk -F, -v OFS=, 'NR > 1 { $3 = 0.5 + $3 / 4; $4 = 0.5 + $4 / 4 } 1' "$WORK/hinge.csv" >"$WORK/norm.csv"
@@ -147,7 +147,7 @@ expect 0 'warning: all points lie within 0 to 1: normalised' --unit px "$WORK/no
 awk -F, -v OFS=, 'NR > 1 { $3 *= 30; $4 *= 30 } 1' "$WORK/hinge.csv" >"$WORK/wide.csv"
 expect 0 'm apart: pixels or millimetres' "$WORK/wide.csv"
 printf 'frame,point,x,y\n0,1,0,0\n0,2,1,0\n0,3,2,0\n1,1,0,0\n1,2,1,0\n1,3,2,1\n' >"$WORK/three.csv"
-expect 0 'warning: 3 tracks: a link needs 4 points or more' "$WORK/three.csv"
+expect 0 'warning: 3 tracks: a link needs at least 4 points' "$WORK/three.csv"
 
 # a noise that cannot be measured
 printf 'frame,point,x,y\n0,1,0,0\n1,1,0,0\n2,1,1,0\n' >"$WORK/short.csv"
@@ -180,7 +180,7 @@ printf 'frame,point,x,y\n0,1,2,oops\n' >"$WORK/bad.csv"
 expect 1 'bad.csv:2:7: oops: a position is a finite number' "$WORK/bad.csv"
 expect 1 'No such file' "$WORK/missing.csv"
 expect 1 'No such file' --log "$WORK/missing.lcm"
-expect 1 'an LCM log with messages on GRRL_POINTS is needed' --log "$WORK/hinge.csv"
+expect 1 'no messages on GRRL_POINTS; an LCM log with' --log "$WORK/hinge.csv"
 expect 1 'columns x_px and y_px, or give --unit px' --profile camera "$WORK/hinge.csv"
 expect 2 'no input'
 expect 2 'one input only' --handle a b
@@ -189,7 +189,7 @@ expect 2 '--unit inch: must be m, mm or px' --unit inch a
 expect 2 '--profile lidar: must be tracker or camera' --profile lidar a
 expect 2 '--noise 0: must be a number above 0, or auto' --noise 0 a
 expect 2 '--noise automatic: must be' --noise automatic a
-expect 2 'noise auto does not go with --handle' --noise auto --handle a
+expect 2 'noise auto does not work with --handle' --noise auto --handle a
 expect 2 '--trial needs --log' --trial 2 a
 expect 2 'camera is for positions in pixels' --profile camera --unit mm a
 expect 2 'Try grrl-perceive --help' --nonsense

@@ -22,17 +22,17 @@ expect 0 '"warnings": \[\]' --log "$WORK/whole.lcm" --json
 expect 0 '^joints 0$' --log "$WORK/whole.lcm" --trial 1
 expect 0 'warning: 36 damaged messages left out' --log "$WORK/damaged.lcm"
 expect 0 '^51 frames' --log "$WORK/damaged.lcm"
-expect 1 'needed, this has none' --log "$WORK/empty.lcm"
-expect 1 'no points of trial 3; leave --trial away' --log "$WORK/whole.lcm" --trial 3
-expect 1 'a file that can be read twice' --log "$WORK"
-expect 2 'does not go with --log' --log "$WORK/whole.lcm" --unit mm
+expect 1 'no messages on GRRL_POINTS' --log "$WORK/empty.lcm"
+expect 1 'no points of trial 3; omit --trial' --log "$WORK/whole.lcm" --trial 3
+expect 1 'a regular file, since it is read twice' --log "$WORK"
+expect 2 'does not work with --log' --log "$WORK/whole.lcm" --unit mm
 
 # bytes cut out within trial 1: trial 2 is whole, trial 1 is not
 from=$((40 * EVENT + 100)) to=$((43 * EVENT + 17))
 cut_out $from $to hole
 where="damaged at byte $((40 * EVENT)) and whole again at byte $((41 * EVENT + 83))"
 expect 0 "$where" --log "$WORK/hole.lcm"
-expect 0 'trial 2 is read, which the damage does not touch' --log "$WORK/hole.lcm"
+expect 0 'trial 2 is read, which the damage does not affect' --log "$WORK/hole.lcm"
 expect 0 '"whole": true' --log "$WORK/hole.lcm" --json
 expect 0 '^60 frames' --log "$WORK/hole.lcm"
 expect 0 'trial 1 is read, and frames of it may be lost there' --log "$WORK/hole.lcm" --trial 1
@@ -70,7 +70,7 @@ for n in $(seq 1 97 $((EVENT * 3 - 1))); do
     head -c "$n" "$WORK/few.lcm" >"$WORK/part.lcm"
     output=$("$PERCEIVE" --json --log "$WORK/part.lcm" 2>&1)
     case $?-$output in
-    1-*'this has none'*) ;;
+    1-*'no messages on GRRL_POINTS'*) ;;
     0-*'is read, and frames of it may be lost'*'"whole": false'*) ;;
     0-*'"whole": true'*) [ $((n % EVENT)) -eq 0 ] || wrong "cut at $n: no word of it" ;;
     *) wrong "cut at $n: $output" ;;

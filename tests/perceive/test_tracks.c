@@ -73,41 +73,41 @@ static const struct {
     const char *text;
     const char *expected;
 } wrong[] = {
-    {"", "f:1:1: the file ends here: the header names the columns frame,point,x,y"},
+    {"", "f:1:1: the file ends here: the header must name the columns frame,point,x,y"},
     {"frame,point,x,y\n\n", "f:3:1: the file ends here: rows are needed"},
-    {"frame,point,x\n", "f:1:1: there is no column y or y_px: the header names"},
-    {"frame,frame,point,x,y\n", "f:1:7: frame: another column means the same"},
-    {"frame,point,x,y,x_px\n", "f:1:17: x_px: another column means the same"},
-    {"frame,point,x_px,y\n", "f:1:18: y: one of x and y is in pixels, the other not"},
+    {"frame,point,x\n", "f:1:1: the column y or y_px is missing: the header must name"},
+    {"frame,frame,point,x,y\n", "f:1:7: frame: another column has the same meaning"},
+    {"frame,point,x,y,x_px\n", "f:1:17: x_px: another column has the same meaning"},
+    {"frame,point,x_px,y\n", "f:1:18: y: one of x and y is in pixels, the other is not"},
     {"y_px,frame,point,x\n", "f:1:1: y_px: one of x and y is in pixels"},
     {"frame,point,x,y\n0,1,2\n", "f:2:6: 3 fields, but the header has 4"},
     {"frame,point,x,y\n0,1,2,3,4\n", "f:2:9: 5 fields, but the header has 4"},
-    {"frame,point,x,y\n0.5,1,2,3\n", "f:2:1: 0.5: a frame is a whole number"},
-    {"frame,point,x,y\n0,1,2,3\n0,2147483648,2,3\n", "f:3:3: 2147483648: a point is a whole"},
+    {"frame,point,x,y\n0.5,1,2,3\n", "f:2:1: 0.5: a frame must be a whole number"},
+    {"frame,point,x,y\n0,1,2,3\n0,2147483648,2,3\n", "f:3:3: 2147483648: a point must be a whole"},
     {"frame,point,x,y\n0,1, 2x,3\n", "f:2:6: 2x: a position is a finite number"},
     {"frame,point,x,y\n0,1,2,nan\n", "f:2:7: nan: a position is a finite number"},
     {"frame,point,x,y\n0,1,,3\n", "f:2:5: a position is a finite number"},
     {"frame,point,x,y\n0,1,0x10,3\n", "f:2:5: 0x10: a position is a finite number"},
     {"frame,point,x,y\n0,1,inf,3\n", "f:2:5: inf: a position is a finite number"},
-    {"frame,point,x,y,visible\n0,1,2,3,2\n", "f:2:9: 2: visible is 0 or 1"},
-    {"frame,point,x,y,occluded\n0,1,2,3,\n", "f:2:9: occluded is 0 or 1, true or false"},
-    {"frame,point,x,y\n0,NA,2,3\n", "f:2:3: NA: a point is a whole"},
-    {"frame,point,x,y\n12.5,1,2,3\n", "f:2:1: 12.5: a frame is a whole number"},
-    {"frame,point,x,y\n0,1e18,2,3\n", "f:2:3: 1e18: a point is a whole"},
-    {"frame,point,x,y\n0,\"1,2,3\n", "f:2:3: a quote that this line does not close"},
-    {"frame,point,x,y\n0,\"1\"2,2,3\n", "f:2:3: text behind a closing quote"},
-    {"frame,track,track_id,x,y\n", "f:1:13: track_id: another column means the same"},
-    {"frame,point,x,y_pos\n", "f:1:15: y_pos: this name and that of the column with x"},
+    {"frame,point,x,y,visible\n0,1,2,3,2\n", "f:2:9: 2: visible must be 0 or 1"},
+    {"frame,point,x,y,occluded\n0,1,2,3,\n", "f:2:9: occluded must be 0 or 1, true or false"},
+    {"frame,point,x,y\n0,NA,2,3\n", "f:2:3: NA: a point must be a whole"},
+    {"frame,point,x,y\n12.5,1,2,3\n", "f:2:1: 12.5: a frame must be a whole number"},
+    {"frame,point,x,y\n0,1e18,2,3\n", "f:2:3: 1e18: a point must be a whole"},
+    {"frame,point,x,y\n0,\"1,2,3\n", "f:2:3: a quote that is not closed in this line"},
+    {"frame,point,x,y\n0,\"1\"2,2,3\n", "f:2:3: text after a closing quote"},
+    {"frame,track,track_id,x,y\n", "f:1:13: track_id: another column has the same meaning"},
+    {"frame,point,x,y_pos\n", "f:1:15: y_pos: this name does not match that of the x column"},
     {"0,1,2,3\n", "f:1:1: numbers, but no header"},
     {"scorer,DLC,DLC,DLC\nbodyparts,a,a,a\n", "f:1:1: DeepLabCut, three header rows: a table"},
-    {"frame,x1,y1,x2,y2\n", "f:1:1: a table with several points in a row"},
+    {"frame,x1,y1,x2,y2\n", "f:1:1: a table with several points per row"},
     {"track,frame_idx,nose.x,nose.y,tail.x,tail.y\n", "f:1:1: a table with several points"},
     {"frame;point;x;y\n0;1;2,5;3.5\n", "f:2:9: 3.5: a decimal point, but other numbers"},
     {"frame;point;x;y\n0;1;0;0\n1;1;1,234;12,345\n", "f:3:5: 1,234: is this a decimal comma"},
     {"frame;point;x;y\n0;1;1,234,5;3\n", "f:2:5: 1,234,5: a position is a finite"},
     {"frame\tpoint\tx\ty\n0\t1\t2,5\t3\n", "f:2:5: 2,5: a position is a finite"},
     {"frame,point,x,y\n0,1,2,3\n1,1,2,3\n0,1,5,6\n",
-     "f:4:1: point 1 of frame 0 stands in line 2 already"},
+     "f:4:1: point 1 of frame 0 is already in line 2"},
 };
 
 static void test_what_is_wrong(void **state)
@@ -125,7 +125,7 @@ static void test_what_is_wrong(void **state)
     struct grrl_tracks_error error;
     FILE *file = file_of("frame,point,x,y\n0,1\0,2,3\n", 25);
     assert_false(grrl_tracks_read_csv(file, "f", &tracks, &error));
-    assert_non_null(strstr(error.text, "f:2:1: this is no text"));
+    assert_non_null(strstr(error.text, "f:2:1: this is not text"));
     assert_int_equal(fclose(file), 0);
     file = file_of("\xff\xfe"
                    "f\0r\0",
@@ -245,13 +245,13 @@ static void test_handle(void **state)
         {"1 2\n1 2 3\n", "f:2:1: 3 numbers, but the rows before have 2"},
         {"1\n", "f:1:1: 1 number only; a row is x y, x y z or a pose"},
         {"1 2 3 4\n", "f:1:1: 4 numbers; a row is x y, x y z or a pose"},
-        {"1 2\n1 b\n", "f:2:3: no finite number"},
-        {"1 2m\n", "f:1:3: no finite number"},
-        {"1 inf\n", "f:1:3: no finite number"},
+        {"1 2\n1 b\n", "f:2:3: not a finite number"},
+        {"1 2m\n", "f:1:3: not a finite number"},
+        {"1 inf\n", "f:1:3: not a finite number"},
         {"1 2 3 0 0 0 1\n1 2 3\n", "f:2:1: 3 numbers, but the rows before have 7"},
-        {"1 2 3 4 5 6 7\n", "f:1:1: seven numbers, but the last four are no quaternion"},
+        {"1 2 3 4 5 6 7\n", "f:1:1: seven numbers, but the last four are not a quaternion"},
         {"1 2 3 4 0 0 0 1\n", "f:1:1: 8 numbers; a row is x y, x y z or a pose: x y z and a "
-                              "quaternion (a time before them has to go)"},
+                              "quaternion (remove a leading time stamp)"},
         {"1 2 3 4 5 6 7 8 9\n", "f:1:17: a ninth number"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

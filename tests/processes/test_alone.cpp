@@ -158,7 +158,7 @@ grrl_agent_config defaults()
 void ends_after_the_pushes_that_were_wanted(void **)
 {
     grrl_agent_config config = defaults();
-    config.most_pushes = 3;
+    config.max_pushes = 3;
     Scene scene(config);
     scene.run();
     assert_int_equal(grrl_agent_end(&scene.agent()), GRRL_AGENT_PUSHES_DONE);
@@ -181,7 +181,7 @@ void ends_when_it_is_sure(void **)
     int right = 0;
     for (uint64_t seed = 1; seed <= 10; seed++) {
         grrl_agent_config config = defaults();
-        config.most_pushes = 40;
+        config.max_pushes = 40;
         config.until_sure = 0.95f;
         Scene scene(config, "RR", PlantMistakes(), seed);
         scene.run(20000);
@@ -204,7 +204,7 @@ void ends_when_it_is_sure(void **)
 void is_never_sure_of_one_link(void **)
 {
     grrl_agent_config config = defaults();
-    config.most_pushes = 3;
+    config.max_pushes = 3;
     config.until_sure = 0.5f;
     Scene scene(config, "l1");
     scene.run();
@@ -238,7 +238,7 @@ void refuses_what_it_cannot_keep(void **)
 void names_the_pair_it_is_least_sure_of(void **)
 {
     grrl_agent_config config = defaults();
-    config.most_pushes = 12;
+    config.max_pushes = 12;
     Scene scene(config, "RR", PlantMistakes(), 2);
     for (int i = 0; i < 20000 && grrl_agent_end(&scene.agent()) == GRRL_AGENT_GOES_ON; i++) {
         int perceived = scene.seen.perceived;
@@ -255,7 +255,7 @@ void names_the_pair_it_is_least_sure_of(void **)
 void keeps_the_limits_of_the_robot(void **)
 {
     grrl_agent_config config = defaults();
-    config.most_pushes = 4;
+    config.max_pushes = 4;
     config.learner.grounding.force_n = 3.0f;
     config.learner.grounding.speed_m_s = 0.04f;
     config.learner.grounding.travel_m = 0.02f;
@@ -280,14 +280,14 @@ bool inside(const grrl_agent_table &t, const float *point)
 void no_push_leaves_the_table(void **)
 {
     grrl_agent_config config = defaults();
-    config.most_pushes = 1;
+    config.max_pushes = 1;
     Scene first(config);
     first.run();
     const grrl_model *model = &first.seen.model;
     assert_true(model->n_bodies > 0);
     grrl_vec2 middle = model->body[0].centroid_m;
 
-    config.most_pushes = 12;
+    config.max_pushes = 12;
     config.table = {middle.x - 0.35f, middle.y - 0.09f, middle.x + 0.35f, middle.y + 0.35f};
     Scene scene(config);
     for (int i = 0; i < 20000 && grrl_agent_end(&scene.agent()) == GRRL_AGENT_GOES_ON; i++) {

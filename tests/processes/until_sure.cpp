@@ -75,7 +75,7 @@ bool run_on(lcm_t *lcm, Watch &watch, const char *object, uint64_t seed, int pus
     grrl_learner_config_default(&config.learner);
     config.learner.seed = seed;
     config.session_id = 1;
-    config.most_pushes = pushes;
+    config.max_pushes = pushes;
     config.until_sure = watch.wanted;
     config.pair = grrl_perception_pair;
     config.now_us = [](void *) { return clock_us; };

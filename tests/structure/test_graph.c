@@ -547,7 +547,8 @@ static void test_random_round_trips(void **state)
         uint8_t n = (uint8_t)grrl_random_below(&random, GRRL_MAX_LINKS + 1);
         struct structure s = {.n_edges = 0};
         s.graph = support_graph(&random, n, 1 + grrl_random_below(&random, 8),
-                                n > 1 ? grrl_random_below(&random, GRRL_MAX_JOINTS - n) : 0, 2);
+                                n > 1 ? grrl_random_below(&random, GRRL_MAX_JOINTS - n) : 0,
+                                GRRL_BUILT_IN_ATOMS);
         for (uint8_t k = 0; k < n; k++)
             s.names[k] = random_name(store, &random, k);
         for (uint8_t b = 0; b < n; b++)

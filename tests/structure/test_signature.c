@@ -97,10 +97,10 @@ static unsigned sum_of(uint64_t word)
     return sum;
 }
 
-static struct grrl_graph random_graph(struct grrl_random *random, uint32_t most_loops)
+static struct grrl_graph random_graph(struct grrl_random *random, uint32_t max_loops)
 {
     uint8_t n = (uint8_t)grrl_random_below(random, GRRL_MAX_LINKS + 1);
-    uint32_t loops = n > 1 ? grrl_random_below(random, most_loops + 1) : 0;
+    uint32_t loops = n > 1 ? grrl_random_below(random, max_loops + 1) : 0;
     return support_graph(random, n, 4 + grrl_random_below(random, 5), loops, 2);
 }
 
@@ -254,8 +254,8 @@ static void test_paths(void **state)
     struct grrl_random random = support_random("paths");
     unsigned n_full = 0;
     for (int i = 0; i < 2000; i++) {
-        uint32_t most_loops = i % 8 == 0 ? GRRL_MAX_JOINTS - GRRL_MAX_LINKS : 4;
-        struct grrl_graph graph = random_graph(&random, most_loops);
+        uint32_t max_loops = i % 8 == 0 ? GRRL_MAX_JOINTS - GRRL_MAX_LINKS : 4;
+        struct grrl_graph graph = random_graph(&random, max_loops);
         unsigned n_directed;
         struct grrl_paths expected = naive_paths(&graph, &n_directed);
         struct grrl_paths paths;

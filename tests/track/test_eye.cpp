@@ -146,7 +146,7 @@ static void the_table_gets_few_points(void **)
         (bench.on_link(point.id) ? on_links : on_table)++;
     std::printf("%d points on links, %d beside them\n", on_links, on_table);
     assert_true(on_links >= 4 * 8);
-    assert_true(on_table <= grrl_track::EyeConfig{}.most_sparse + 20);
+    assert_true(on_table <= grrl_track::EyeConfig{}.max_sparse + 20);
 }
 
 static void an_empty_picture_has_no_points(void **)

@@ -3,7 +3,7 @@
 
 # _grrl_rows PROGRAM: its options as --help has them, "--name" or "--name ARGUMENT"
 _grrl_rows() {
-    "$1" --help 2>/dev/null | sed -nE 's/^  (--[a-z0-9-]+( [A-Za-z0-9,.:|=[]+\]?)?)(  .*)?$/\1/p'
+    "$1" --help 2>/dev/null | sed -nE 's/^  (--[a-z0-9-]+( [A-Za-z0-9,.:|=[/]+\]?)?)(  .*)?$/\1/p'
 }
 
 # _grrl_words PROGRAM: what its first argument may be, from the lines of usage
@@ -49,4 +49,4 @@ _grrl() {
 }
 
 complete -o filenames -F _grrl grrl-agent grrl-bridge grrl-evaluate grrl-experiment grrl-perceive \
-    grrl-sim grrl-term grrl-track
+    grrl-sim grrl-term grrl-track grrl-view

@@ -10,15 +10,6 @@ void grrl_random_init(struct grrl_random *random, uint64_t seed, uint64_t stream
     (void)grrl_random_next(random);
 }
 
-uint32_t grrl_random_next(struct grrl_random *random)
-{
-    uint64_t old = random->state;
-    random->state = old * UINT64_C(6364136223846793005) + random->increment;
-    uint32_t shifted = (uint32_t)(((old >> 18) ^ old) >> 27);
-    uint32_t rotation = (uint32_t)(old >> 59);
-    return (shifted >> rotation) | (shifted << ((32u - rotation) & 31u));
-}
-
 uint32_t grrl_random_below(struct grrl_random *random, uint32_t count)
 {
     uint32_t threshold =

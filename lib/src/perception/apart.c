@@ -1,39 +1,41 @@
 /*
- * apart.c: whether two bodies moved apart, by how far and by what it costs to take them for one.
+ * apart.c: whether two bodies moved relative to each other: by how far, and what it costs to fit
+ * them as one.
  */
 #include "perception/perception_internal.h"
 
-/* Of the range of a relative motion: over ten rests noise ranges over 3.1 standard deviations in
- * the mean, and over more than 5 in 15 of 1,000 cases. */
+/* Standard deviations for the range of a relative motion: over ten rests noise has a mean range of
+ * 3.1, and exceeds 5 in 15 of 1,000 cases. */
 #define FAR_SIGMAS 5.0f
 
-/* A motion apart is little below this many times what tells a joint (12 degrees, 10 mm). Features
- * 50 mm from a joint that turned more are 10 mm or 15 standard deviations off: each tells its link
- * by itself, and the bodies need neither be cut anew nor fitted as one. */
+/* Relative motion below this many times the joint detection threshold is small (12 degrees, 10 mm).
+ * Beyond it, features 50 mm from the joint are off by 10 mm or 15 standard deviations: each one
+ * identifies its link by itself, and the bodies need neither be cut again nor fitted as one. */
 #define LITTLE 6.0f
 
-/* Chi squared a keyframe's separate pose must save. Its 3 parameters save 3 by chance, with a
- * standard deviation of 2.4; 12 is exceeded in 7 of 1000. */
+/* Chi squared that a separate pose must save in a keyframe. Its 3 parameters save 3 by chance, with
+ * a standard deviation of 2.4; 12 is exceeded in 7 of 1000. */
 #define MERGE_FREE 12.0f
 
-/* And how much more in all keyframes together. By chance 48 of them save 0.8; the rest is a margin
- * for residuals that are not Gaussian. */
+/* What must remain beyond that over all keyframes. By chance 48 of them leave 0.8; the rest is a
+ * margin for residuals that are not Gaussian. */
 #define MERGE_EVIDENCE 40.0f
 
-/* Of one squared residual in that sum, higher than GRRL_COST_CAP: a point 10 standard deviations
- * off tells that bodies moved apart, one at 30 tells no more. */
+/* Cap on one squared residual in that sum, higher than GRRL_COST_CAP: a point 10 standard
+ * deviations off shows that the bodies moved apart; one at 30 shows no more. */
 #define APART_CAP 100.0f
 
-#define FEW_FRAMES 3 /* as many as a keyframe of a push has */
+#define FEW_FRAMES 3 /* as many as in a keyframe of a push */
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
 
 static float at_most(float x, float cap)
 {
     return x < cap ? x : cap;
 }
 
-/* Chi squared that the poses of bodies a and b save in keyframe k over one pose of both. */
+/* Chi squared that separate poses of bodies a and b save in keyframe k compared with one common
+ * pose. */
 static float saved_apart(const struct grrl_perception *p, const struct grrl_rigid_group *together,
                          uint8_t a, uint8_t b, uint8_t k)
 {
@@ -101,7 +103,7 @@ static struct grrl_pose relative_pose(const struct grrl_perception_pose *a,
                               a->pose.c * b->pose.s - a->pose.s * b->pose.c};
 }
 
-/* The larger variances of a relative pose so far and in one keyframe. */
+/* Raises the variances in `range` to those of the relative pose in one keyframe. */
 static void include_noise(const struct grrl_perception *p, const struct grrl_perception_pose *a,
                           const struct grrl_perception_pose *b, struct grrl_vec2 between,
                           struct grrl_apart_range *range)
@@ -115,7 +117,7 @@ static void include_noise(const struct grrl_perception *p, const struct grrl_per
     range->shift_var = shift > range->shift_var ? shift : range->shift_var;
 }
 
-/* Frames averaged in a keyframe, at most. */
+/* The largest number of frames averaged for any point of a keyframe. */
 static uint8_t frames_of(const struct grrl_perception_keyframe *key, uint16_t n_slots)
 {
     uint8_t most = 0;
@@ -125,9 +127,10 @@ static uint8_t frames_of(const struct grrl_perception_keyframe *key, uint16_t n_
 }
 
 /*
- * Whether what moved apart is told from rest to rest: two rests saw both, and more frames were
- * averaged in them than in a push. Where nobody told when things were at rest, a link is missing in
- * the first or the last picture, or a motion comes back, all keyframes tell.
+ * Whether to compare keyframes at rest only: at least two of them saw both bodies, averaged over
+ * more frames than a keyframe of a push. Otherwise all keyframes count: the recording may not say
+ * when things were at rest, a link may be missing in the first or the last image, or a motion may
+ * be reversed.
  */
 static bool rests_tell_alone(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
@@ -163,7 +166,7 @@ struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p
             middle = grrl_vec2_scale(r.p, 0.5f);
         }
         include_noise(p, pa, pb, r.p, &range);
-        /* where b takes the point half way between them */
+        /* where b carries the point halfway between them */
         struct grrl_vec2 at = grrl_transform(r, grrl_untransform(reference, middle));
         struct grrl_vec2 d = grrl_vec2_sub(at, middle);
         include(turn, r.s * reference.c - r.c * reference.s);
@@ -177,9 +180,9 @@ struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p
 }
 
 /*
- * Whether two bodies moved apart far enough, from rest to rest, that a joint could be told. Less is
- * not worth a body: features beside the joint could not be shared out, and what the pair is tied to
- * would be tied to either.
+ * Whether the relative motion of two bodies, from rest to rest, is large enough to detect a joint.
+ * Below that a second body is not worthwhile: features near the joint could not be assigned, and
+ * whatever is joined to the pair would seem to be joined to either.
  */
 static bool is_far(const struct grrl_perception *p, const struct grrl_apart_range *range)
 {
@@ -191,7 +194,7 @@ static bool is_far(const struct grrl_perception *p, const struct grrl_apart_rang
             range->shift2 > sigmas2 * range->shift_var);
 }
 
-/* In units of what tells a joint. */
+/* Whether the motion is below `units` times the joint detection threshold. */
 static bool is_less(const struct grrl_perception *p, const struct grrl_apart_range *range,
                     float units)
 {
@@ -205,7 +208,7 @@ bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
     struct grrl_apart_range range = grrl_apart_range_between(p, a, b);
     bool far = is_far(p, &range);
     if (far && !is_less(p, &range, LITTLE * p->config.slack))
-        return false; /* beyond doubt; a fit of both together costs much more than this */
+        return false; /* clearly two bodies; saves the much more expensive fit of both together */
     if (!grrl_assign_bodies_may_share(p, a, b))
         return false;
     return !far || grrl_apart_evidence(p, a, b) < MERGE_EVIDENCE * p->config.slack;

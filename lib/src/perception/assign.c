@@ -1,28 +1,28 @@
 /*
  * assign.c: which body a feature moves with.
  *
- * A feature's cost in a body is its squared residuals in units of their variance over all
- * keyframes, where 2 are expected of each. It goes where it costs least, if that is no more than
- * noise explains.
+ * The cost of a feature in a body is the sum of its squared residuals over all keyframes, in units
+ * of their variance; each contributes 2 on average. A feature goes where it costs least, if noise
+ * can explain that cost.
  */
 #include "perception/perception_internal.h"
 
-/* A feature belongs to a body up to this many standard deviations above the cost expected, and 4
- * more because the chi squared of few keyframes has a longer tail: noise exceeds the limit in one
- * case of 1,100 with one keyframe, of 3,600 with ten. */
+/* A feature may belong to a body up to this many standard deviations above the expected cost, plus
+ * 4 because chi squared has a longer tail for few keyframes: noise exceeds the limit in one case of
+ * 1,100 with one keyframe, of 3,600 with ten. */
 #define LIMIT_SIGMAS 4.0f
 #define LIMIT_BASE 4.0f
 
-/* Chi squared by which another body must be better than a feature's own, as much as one keyframe is
- * expected to cost: a feature beside a joint fits both of its links and shall not change sides by
- * chance. */
+/* Chi squared by which another body must beat a feature's own, the expected cost of one keyframe: a
+ * feature near a joint fits both links and must not change sides by chance. */
 #define OWN_COST 2.0f
 
-/* Chi squared a feature may lose by moving to another body and still be no worse off: four standard
- * deviations of the two residuals (2) of one keyframe. */
+/* Chi squared that a feature may lose in another body and still count as fitting there: four
+ * standard deviations (of 2 each) of the two residuals of one keyframe. */
 #define ELSEWHERE_COST 8.0f
 
-/* Mean cost a keyframe above which a feature does not belong; few keyframes scatter more. */
+/* The cost over n keyframes above which a feature does not belong; the margin is relatively larger
+ * for few keyframes. */
 static float cost_limit(const struct grrl_perception *p, uint16_t n)
 {
     float limit = 2.0f * (float)n + LIMIT_SIGMAS * grrl_sqrt(4.0f * (float)n) + LIMIT_BASE;
@@ -70,8 +70,8 @@ static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
     return 0;
 }
 
-/* Blobs that lie apart stay apart until motion speaks: what never moved looks rigid with everything
- * that never moved. */
+/* Separate blobs stay separate until motion joins them: whatever has never moved looks rigid with
+ * everything else that has never moved. */
 static bool may_share(const struct grrl_perception *p, uint8_t blob, bool moved, uint8_t body)
 {
     uint8_t other = blob_of_body(p, body);
@@ -85,8 +85,8 @@ bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, ui
 }
 
 /*
- * Whether a feature strays from its body less than what tells a joint, in the mean. A body bent by
- * a joint that moved less keeps its features, though their residuals are beyond noise.
+ * Whether a feature deviates from its body by less than the joint detection threshold on average. A
+ * body bent by a joint that moved less keeps its features, though their residuals exceed the noise.
  */
 static bool stays_close(const struct grrl_perception *p, uint16_t slot)
 {
@@ -104,7 +104,7 @@ static bool stays_close(const struct grrl_perception *p, uint16_t slot)
     return sum < limit2 * n;
 }
 
-/* What a feature costs in a body beyond what it may; false: it cannot be in it. */
+/* The cost of a feature in a body above the limit; false: it cannot belong to it. */
 static bool excess_in(const struct grrl_perception *p, uint16_t slot, uint8_t body, float *excess)
 {
     bool is_own = body == p->body_of[slot];
@@ -134,7 +134,7 @@ uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
 {
     uint8_t own = p->body_of[slot];
     uint8_t best = GRRL_FEATURE_NONE;
-    float best_excess = 0.0f; /* over the limit: unassigned */
+    float best_excess = 0.0f; /* above the limit: unassigned */
     bool is_table = own == GRRL_FEATURE_BACKGROUND && p->blob_of[slot] == 0;
     for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) { /* the table moves with nothing */
         float excess;
@@ -151,8 +151,8 @@ uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
 }
 
 /*
- * Whether a feature would be no worse off in some other body. A body of n features follows their
- * noise with its own pose, which saves it a share of about 3 / (2 n) of each residual.
+ * Whether a feature would fit some other body as well. The pose of a body of n features follows
+ * their noise, which reduces each residual by about 3 / (2 n).
  */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own)
 {

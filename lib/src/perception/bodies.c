@@ -1,28 +1,27 @@
 /*
- * bodies.c: features into rigid bodies, their number unknown.
+ * bodies.c: groups features into rigid bodies; their number is unknown.
  *
- * The bodies of the last update are the start (at first those of initial_segmentation.c): a body
- * whose residuals are too large is split by consensus.c, features are reassigned, and bodies that
- * never moved apart are merged. All tests are on squared residuals in units of their variance, so
- * that one noise parameter is enough; a difference counts when it is significant in single
- * keyframes, however many other keyframes agree.
+ * The search starts from the bodies of the last update (at first those of initial_segmentation.c):
+ * a body whose residuals are too large is split by consensus.c, features are reassigned, and bodies
+ * that never moved apart are merged. All tests use squared residuals in units of their variance, so
+ * one noise parameter is enough; a difference counts if it is significant in single keyframes,
+ * however many other keyframes agree.
  */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
-/* Misfit above which a body is split, in standard deviations of chi squared. Noise alone lets a
- * body of ten features exceed it in one of 2,700 keyframes, in one of 57 trials of 48 keyframes. A
- * split without a cause costs time only: the merges undo it. */
+/* Misfit above which a body is split, in standard deviations of chi squared. By noise alone a body
+ * of ten features exceeds it in one of 2,700 keyframes, or one of 57 trials of 48 keyframes. A
+ * needless split costs only time: the merges undo it. */
 #define SPLIT_SIGMAS 4.5f
 
-/* Chi squared by which another cut must be better: what three parameters (MERGE_FREE) save by
- * chance in 7 of 1,000 cases. Where links had been parted wrongly the right cut gained 35 to 200.
- */
+/* Chi squared that a new cut must gain: what three parameters (MERGE_FREE) save by chance in 7 of
+ * 1,000 cases. Where links had been separated wrongly, the right cut gained 35 to 200. */
 #define CUT_GAIN 12.0f
 
-/* Rounds of reassignment, at most: features could go to and fro. Of 4,400 calls on 200 random
- * chains 19 ended at the limit, 98% needed three rounds or fewer. */
+/* Limit on the rounds of reassignment: features could oscillate. Of 4,400 calls on 200 random
+ * chains 19 reached the limit; 98% needed three rounds or fewer. */
 #define REASSIGN_ROUNDS 6
 
 void grrl_bodies_add(struct grrl_perception *p)
@@ -43,7 +42,7 @@ static void fit_all(struct grrl_perception *p)
         fit_body(p, b);
 }
 
-/* Takes a body out of the list; its features must be elsewhere. */
+/* Removes a body from the list; it must have no features left. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
     for (uint16_t i = 0; i < p->n_slots; i++)
@@ -58,7 +57,7 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-/* Makes one of all pairs of bodies of which `are_one` says so. */
+/* Merges every pair of bodies for which `are_one` holds. */
 static void merge_where(struct grrl_perception *p,
                         bool (*are_one)(const struct grrl_perception *, uint8_t, uint8_t))
 {
@@ -71,13 +70,13 @@ static void merge_where(struct grrl_perception *p,
                     p->body_of[i] = a;
             remove_body(p, b);
             fit_body(p, a);
-            b = a; /* the merged body may now fit one that was passed over */
+            b = a; /* the merged body may now match one checked before */
         }
     }
 }
 
-/* Two blobs at rest that lie apart may be one link on which few features show. They are if another
- * turns against both about the same point: links on two joints have two. */
+/* Two separate blobs at rest may be one link with few visible features. They are if another body
+ * turns relative to both about the same point: two links would have two such points. */
 static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
@@ -97,14 +96,14 @@ static bool reassign_once(struct grrl_perception *p)
     return changed;
 }
 
-/* Features to the body they move with, poses to the features, until nothing changes. */
+/* Alternates between assigning features to bodies and fitting poses until nothing changes. */
 static void reassign(struct grrl_perception *p)
 {
     for (int round = 0; round < REASSIGN_ROUNDS && reassign_once(p); round++) {
     }
 }
 
-/* Bodies with too few features are none. */
+/* Removes bodies with too few features. */
 static void dissolve_small(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies; b++) {
@@ -118,8 +117,8 @@ static void dissolve_small(struct grrl_perception *p)
     }
 }
 
-/* What never moved and hangs together only by what has moved away is the table beside the object.
- */
+/* A body that never moved, and whose features were connected only through features that have since
+ * moved away, is the table beside the object. */
 static void give_back_the_table(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
@@ -135,8 +134,8 @@ static void give_back_the_table(struct grrl_perception *p)
     }
 }
 
-/* Features beside a joint move with either link and can pose as a body of their own: a body is
- * real only if enough of its features fit nowhere else. */
+/* Features near a joint move with either link and can look like a body of their own: a body is real
+ * only if enough of its features fit nowhere else. */
 static void dissolve_redundant(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
@@ -154,8 +153,8 @@ static void dissolve_redundant(struct grrl_perception *p)
     }
 }
 
-/* A body whose features have all gone to others is none. They moved there when another body
- * dissolved, so that nothing tells where it is any more, and no joint of it is left. */
+/* Removes bodies that have lost all their features to others, which happens when another body
+ * dissolves: their place is no longer known, and they have no joints. */
 static void drop_empty(struct grrl_perception *p)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -164,7 +163,7 @@ static void drop_empty(struct grrl_perception *p)
             remove_body(p, b--);
 }
 
-/* Two bodies that moved apart only a little are cut anew, where they part best (cut.c). */
+/* Cuts two bodies with little relative motion again, where the cut separates them best (cut.c). */
 static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     if (!grrl_apart_is_little(p, a, b) || !grrl_assign_bodies_may_share(p, a, b))
@@ -184,7 +183,7 @@ static void cut_anew(struct grrl_perception *p, uint8_t a, uint8_t b)
     }
     if (gain < CUT_GAIN * p->config.slack)
         return;
-    int of_a = 0; /* the part goes on as the body most of it was, so that numbers stay */
+    int of_a = 0; /* the part keeps the body most of it belonged to, so numbers stay */
     for (uint16_t i = 0; i < n_part; i++)
         of_a += p->body_of[part[i]] == a ? 1 : -1;
     for (uint16_t i = 0; i < together.n; i++)
@@ -203,9 +202,9 @@ static void cut_all_anew(struct grrl_perception *p)
 }
 
 /*
- * A body outlives its features. Where tracks are short, those that the reference keyframe of a
- * consensus did not see took no part in it; they join while they move with the body as far as it is
- * known, which tells where it is in further keyframes.
+ * A body outlives its features. If tracks are short, features that the reference keyframe of a
+ * consensus did not see took no part in it. They join as long as they move with the body where its
+ * pose is known; that gives its pose in further keyframes.
  */
 static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t *slots, uint16_t n,
                         const float *score)
@@ -227,7 +226,7 @@ static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t 
     }
 }
 
-/* Splits body `body` if a part of it moved apart from the rest. */
+/* Splits `body` if part of it moved relative to the rest. */
 static void split_body(struct grrl_perception *p, uint8_t body)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -248,8 +247,8 @@ static void split_body(struct grrl_perception *p, uint8_t body)
     extend_body(p, body, slots, n, score);
 }
 
-/* Bodies among the features that belong to none: what splitting left over, and what the background
- * gave up because it moved. */
+/* Forms a body from unassigned features: those left over by splits, and those that left the
+ * background because they moved. */
 static bool adopt_strays(struct grrl_perception *p)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -277,9 +276,10 @@ static bool adopt_strays(struct grrl_perception *p)
 }
 
 /*
- * A joint within a body that moved too little to be told bends the body: what its residuals vary
- * beyond noise, per axis. It bends it less than what tells a joint; outliers do more, and must not
- * pass for it: where they do, no joint misses anything any more.
+ * The variance of a body's residuals beyond noise, per axis: a joint inside a body that moved too
+ * little to be detected bends the body. Its effect is below the joint detection threshold, so
+ * larger residuals are capped: outliers must not count as bending, since that would make every
+ * joint fit.
  */
 static float bend_of(const struct grrl_perception *p, uint8_t body)
 {
@@ -315,7 +315,7 @@ void grrl_bodies_update(struct grrl_perception *p)
     while (adopt_strays(p)) {
     }
     reassign(p);
-    while (adopt_strays(p)) { /* what the background gave up */
+    while (adopt_strays(p)) { /* features that left the background */
     }
     dissolve_small(p);
     merge_where(p, grrl_apart_may_merge);

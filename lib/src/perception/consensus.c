@@ -2,38 +2,39 @@
  * consensus.c: the largest set of features that moved as one.
  *
  * Each hypothesis starts from a feature and its nearest neighbours: where has this group moved, and
- * which features moved with it? It grows over those that did. The residual of a follower is divided
- * by a variance that includes the uncertainty of the group's own pose, so that four features can
- * grow along a link without losing its far end.
+ * which features moved with it? It grows to include those that did. The residual of a follower is
+ * divided by a variance that includes the uncertainty of the group's own pose, so a group of four
+ * features can grow along a link without losing its far end.
  */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
-/* With the seed a group of four, as many as make a body (min_features): a smaller one has a pose so
- * uncertain that everything follows it. */
+/* With the seed they form a group of four, as many as make a body (min_features): the pose of a
+ * smaller group is so uncertain that everything follows it. */
 #define SEED_NEIGHBOURS 3
 
-/* Hypotheses tried, evenly over the features: the cost of a split is linear in them. A part with
- * one in ten of the features has four or five seeds. */
+/* Number of hypotheses, spread evenly over the features: the cost of a split is linear in it. A
+ * part with one in ten of the features gets four or five seeds. */
 #define SEEDS_MAX 48
 
-/* Keyframes used to score hypotheses. Half are spread over the trial, since with the worst alone
- * two links in one body stayed so for many pushes. */
+/* Keyframes used to score hypotheses. Half are spread over the trial: with only the worst ones, two
+ * links in one body stayed together for many pushes. */
 #define SPLIT_KEYFRAMES 12
 
-/* Of one squared residual, 20 standard deviations: high, since keyframes are ranked by it and those
- * in which much moved apart must not all be the same. */
+/* Cap on one squared residual, 20 standard deviations: high because keyframes are ranked by misfit,
+ * and those with large relative motions must not all score the same. */
 #define MISFIT_CAP 400.0f
 
-/* Mean squared residual of a follower, where 2 is expected: over 12 keyframes noise exceeds it once
- * in 77 features, over 6 once in 20. Those lost are reassigned afterwards. */
+/* Limit on a follower's mean squared residual, which is 2 on average: over 12 keyframes noise
+ * exceeds it once in 77 features, over 6 once in 20. Features lost this way are reassigned
+ * afterwards. */
 #define INLIER_COST 3.5f
 
-#define GROW_ROUNDS 3 /* a group grows along a link, and settles */
-#define SEEN 100u     /* outweighs the frames averaged, 60 at most */
+#define GROW_ROUNDS 3 /* a group grows along a link, then settles */
+#define SEEN 100u     /* outweighs the number of frames averaged, 60 at most */
 
-/* Largest misfit of a body over its keyframes in standard deviations; score[k] for each. */
+/* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                             uint8_t body, float *score)
 {
@@ -63,13 +64,13 @@ float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slo
     return worst > all ? worst : all;
 }
 
-/* A few keyframes as a perception of their own would see them: which to score hypotheses on. */
+/* The keyframes on which hypotheses are scored. */
 struct choice_of_keyframes {
     uint8_t n;
     uint8_t k[SPLIT_KEYFRAMES];
 };
 
-/* Features seen in two keyframes. */
+/* Number of features seen in both keyframes. */
 static unsigned seen_in_both(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              uint8_t k0, uint8_t k1)
 {
@@ -80,7 +81,7 @@ static unsigned seen_in_both(const struct grrl_perception *p, const uint16_t *sl
     return seen;
 }
 
-/* Most seen, best averaged. */
+/* The keyframe that saw most features, averaged over the most frames. */
 static uint8_t fullest_keyframe(const struct grrl_perception *p, const uint16_t *slots, uint16_t n)
 {
     uint8_t best = 0;
@@ -99,7 +100,7 @@ static uint8_t fullest_keyframe(const struct grrl_perception *p, const uint16_t 
     return best;
 }
 
-/* Where tracks are shorter than the motion: the keyframe from which most of the misfit is seen. */
+/* If tracks are shorter than the motion: the keyframe that shares the most misfit with others. */
 static uint8_t telling_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                                  const float *score)
 {
@@ -120,7 +121,8 @@ static uint8_t telling_reference(const struct grrl_perception *p, const uint16_t
     return best;
 }
 
-/* Whether tracks are shorter than the motion: most keyframes share no group with the fullest. */
+/* Whether tracks are shorter than the motion: most keyframes have too few features in common with
+ * the fullest for a group. */
 static bool tracks_are_short(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              uint8_t fullest)
 {
@@ -144,9 +146,9 @@ bool grrl_consensus_reference(const struct grrl_perception *p, const uint16_t *s
 }
 
 /*
- * Half of them spread over all keyframes, the last included, so that no lasting change is missed;
- * half those in which the features fit worst as one body. Of short tracks only keyframes that share
- * a group with k0.
+ * Half are spread over all keyframes, including the last, so that no lasting change is missed; the
+ * other half are those in which the features fit worst as one body. With short tracks, only
+ * keyframes that share enough features with k0 for a group are used.
  */
 static struct choice_of_keyframes telling_keyframes(const struct grrl_perception *p,
                                                     const uint16_t *slots, uint16_t n, uint8_t k0,
@@ -179,13 +181,13 @@ static struct choice_of_keyframes telling_keyframes(const struct grrl_perception
     return chosen;
 }
 
-/* A rigid displacement from one keyframe to another, with what its uncertainty needs. */
+/* A rigid displacement from one keyframe to another, with the terms of its uncertainty. */
 struct displacement {
     struct grrl_vec2 from;
     struct grrl_vec2 to;
     float c;
     float s;
-    float size; /* as it looks in the second keyframe, in the first it is 1 */
+    float size; /* apparent size in the second keyframe; 1 in the first */
     float weight;
     float inertia;
 };
@@ -230,7 +232,7 @@ static bool displacement_of(const struct grrl_perception *p, const uint16_t *slo
 }
 
 /*
- * The features among `slots` that move as the group does, in the chosen keyframes relative to the
+ * The features among `slots` that move with the group in the chosen keyframes, relative to the
  * reference k0; returns how many, members[] holds them.
  */
 static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,

@@ -1,32 +1,31 @@
 /*
- * cut.c: where two bodies that moved little against one another part.
+ * cut.c: where to separate two bodies that moved little relative to each other.
  *
- * Moving single features to where they fit better (bodies.c) ends in some optimum near its start.
- * Where a joint moved a few degrees, that can be a body and a half with the other half of a link
- * beside it. Links part along a line, or nearly so, and all lines can be tried at once: with both
- * bodies fitted as one, the residuals of a part that turned and shifted a little are linear in its
- * turn and shift, and the sums that a least-squares fit needs grow feature by feature as the line
- * sweeps over them.
+ * Moving single features to where they fit better (bodies.c) ends in a local optimum. If a joint
+ * moved only a few degrees, that can be one and a half links in one body and the other half beside
+ * it. Links are separated by a line, or nearly so, and all lines can be tried at once: with both
+ * bodies fitted as one, the residuals of a part are linear in its turn and shift if both are small,
+ * and the sums that a least-squares fit needs grow feature by feature as the line sweeps over them.
  */
 #include <string.h>
 
 #include "perception/perception_internal.h"
 
-/* Rounds in which features are shared out between two crossing links. Each moves all features at
- * once, from the quadrants of a cross, where most are right already. */
+/* Rounds of assigning features to two crossing links. Each round moves all features at once; the
+ * start, the quadrants of a cross, has most of them right. */
 #define ROUNDS 4
 
-/* Of the line, over half a turn, 30 degrees apart: the best is within 15 degrees of where the links
- * part, and what it leaves on the wrong side is reassigned. */
+/* Directions of the line over half a turn, 30 degrees apart: the best is within 15 degrees of the
+ * true boundary, and features it leaves on the wrong side are reassigned. */
 #define DIRECTIONS 6
 
-/* A part whose share of the weights, or of the inertia, is below these is none: what is left of it
- * is the rounding of differences between sums. */
+/* A part with a smaller share of the weights or of the inertia counts as empty: the rest is
+ * rounding in differences of sums. */
 #define LEAST_SHARE 1e-3f
 #define LEAST_INERTIA_SHARE 1e-6f
 
-/* What one part of the features tells in one keyframe, weighted by 1 / variance: q is a feature's
- * place, d its residual. */
+/* Sums over one part of the features in one keyframe, weighted by 1 / variance: q is the place of a
+ * feature, d its residual. */
 struct part_sum {
     float w;
     struct grrl_vec2 q;
@@ -44,7 +43,7 @@ static void add(struct part_sum *to, const struct part_sum *one, float sign)
     to->moment += sign * one->moment;
 }
 
-/* Chi squared that a shift and a turn of its own save a part. */
+/* Chi squared that a part saves with its own shift and turn. */
 static float saved(const struct part_sum *s, float least_w)
 {
     if (!(s->w > least_w))
@@ -63,7 +62,7 @@ static float saved_by_both(const struct part_sum *part, const struct part_sum *a
     return saved(part, rounding) + saved(&rest, rounding);
 }
 
-/* One feature in one keyframe; one that is off more than motion explains counts for nothing. */
+/* The terms of one feature in one keyframe; zero if it is farther off than motion can explain. */
 static struct part_sum sum_of(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                               uint16_t slot, uint8_t k)
 {
@@ -99,7 +98,7 @@ static void sort_along(const struct grrl_rigid_group *t, struct grrl_vec2 direct
     }
 }
 
-/* What the parts save as they are: the features of `body` and the others. */
+/* What the present parts save: the features of `body` and the others. */
 static float saved_as_is(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                          const uint8_t *body_of, uint8_t body, const struct part_sum *all)
 {
@@ -172,9 +171,9 @@ float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_gro
 }
 
 /*
- * Links that cross part along no line, but along two: the quadrants of a cross between them belong
- * to one link and to the other in turn. From crosses in several directions features go to the
- * side whose turn and shift leaves less of them.
+ * Links that cross are separated not by one line but by two: the quadrants of a cross belong to one
+ * link and the other in turn. Starting from crosses in several directions, each feature moves to
+ * the side whose turn and shift leaves the smaller residual.
  */
 static void cross(const struct grrl_rigid_group *t, struct grrl_vec2 direction, bool *is_left)
 {
@@ -187,7 +186,7 @@ static void cross(const struct grrl_rigid_group *t, struct grrl_vec2 direction, 
     }
 }
 
-/* Chi squared that is left of one feature after a part's turn and shift. */
+/* Chi squared of one feature that remains after a part's turn and shift. */
 static float left_over(const struct part_sum *part, const struct part_sum *one)
 {
     struct grrl_vec2 mean = grrl_vec2_scale(part->q, 1.0f / part->w);
@@ -202,11 +201,13 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
     return one->w * grrl_vec2_dot(rest, rest);
 }
 
-/* Moves features to the side that leaves less of them; returns what both sides save then. */
+/* Moves each feature to the side that leaves the smaller residual; returns what both sides saved
+ * before. */
 static float share_out(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                        const struct part_sum *all, bool *is_left)
 {
-    float excess[GRRL_MAX_FEATURES] = {0.0f}; /* left over on the left more than on the right */
+    float excess[GRRL_MAX_FEATURES] = {
+        0.0f}; /* what remains on the left minus what remains on the right */
     float total = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         struct part_sum left = {0};
@@ -239,7 +240,7 @@ static uint16_t take_left(const struct grrl_rigid_group *t, const bool *is_left,
     return n;
 }
 
-/* Whether the features of `body` and the others lie among one another, not side by side. */
+/* Whether the features of `body` and the others overlap rather than lie side by side. */
 static bool lie_across(const struct grrl_perception *p, const struct grrl_rigid_group *t,
                        uint8_t body)
 {

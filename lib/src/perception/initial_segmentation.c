@@ -1,24 +1,24 @@
 /*
- * initial_segmentation.c: what may be a body before anything has moved. Features of objects lie
- * densely, those of the background do not: each dense group (blob) is one candidate link.
+ * initial_segmentation.c: candidate bodies before anything has moved. Features of objects are
+ * dense, those of the background sparse: each dense group (blob) is one candidate link.
  */
 #include "perception/perception_internal.h"
 
-/* Least difference of the mean logarithms of squared distances on either side of Otsu's threshold:
- * ln 4 = 1.39, a background twice as sparse as the object. Distances within one density differ
- * less. */
+/* Minimum difference between the mean logarithms of squared distances on the two sides of Otsu's
+ * threshold: ln 4 = 1.39 means a background twice as sparse as the object. Distances at a uniform
+ * density differ less. */
 #define DENSITY_CONTRAST 1.4f
 
-/* Features of one object lie this many times their usual distance apart at most. Of points strewn
- * at random over a plane the second nearest is that far away once in 200,000 (Gamma distribution of
- * its squared distance). */
+/* Neighbouring features of one object lie at most this many times their usual distance apart. Among
+ * points scattered at random over a plane, the second nearest is that far away once in 200,000
+ * (Gamma distribution of its squared distance). */
 #define REACH 3.0f
 
-#define LEAST_M2 1e-9f /* added to squared distances (0.03 mm) before their logarithm is taken */
+#define LEAST_M2 1e-9f /* (0.03 mm)^2, added to squared distances before the logarithm */
 
-#define APART_M2 1e9f /* of features that no keyframe saw together */
+#define APART_M2 1e9f /* squared distance of features that no keyframe saw together */
 
-/* Squared distance of two features at first sight: in the first keyframe that saw both. */
+/* Squared distance of two features in the first keyframe that saw both. */
 static float first_distance2(const struct grrl_perception *p, uint16_t i, uint16_t j)
 {
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -29,7 +29,7 @@ static float first_distance2(const struct grrl_perception *p, uint16_t i, uint16
     return APART_M2;
 }
 
-/* The first keyframe that saw a feature; n_keyframes: none did. */
+/* The first keyframe that saw a feature, or n_keyframes. */
 static uint8_t first_keyframe(const struct grrl_perception *p, uint16_t slot)
 {
     uint8_t k = 0;
@@ -38,7 +38,7 @@ static uint8_t first_keyframe(const struct grrl_perception *p, uint16_t slot)
     return k;
 }
 
-/* Squared distance from slot i, seen first in keyframe k, to its second nearest neighbour there. */
+/* Squared distance from slot i, first seen in keyframe k, to its second nearest neighbour there. */
 static float neighbour_distance2(const struct grrl_perception *p, uint16_t i, uint8_t k)
 {
     const struct grrl_perception_keyframe *key = &p->keyframe[k];
@@ -60,7 +60,7 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i, ui
 
 static void sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n; i++) { /* insertion sort: once an object */
+    for (uint16_t i = 1; i < n; i++) { /* insertion sort: once per object */
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -72,9 +72,9 @@ static void sort(float *values, uint16_t n)
 }
 
 /*
- * How far features of one object lie apart at most: three times their usual distance. Features of
- * objects lie densely, those of the background do not; Otsu's threshold (1979) on the logarithms
- * of the sorted distances parts the two, whichever are more.
+ * The largest distance between neighbouring features of one object: three times their usual
+ * distance. Features of objects are dense, those of the background sparse; Otsu's threshold (1979)
+ * on the logarithms of the sorted distances separates the two, whichever are more numerous.
  */
 static float object_reach(float *distance2, uint16_t n)
 {
@@ -97,7 +97,7 @@ static float object_reach(float *distance2, uint16_t n)
     return REACH * grrl_sqrt(distance2[dense / 2]);
 }
 
-/* Grows a blob from a slot by features closer than sqrt(reach2); returns its size. */
+/* Grows a blob from a slot by adding features closer than sqrt(reach2); returns its size. */
 static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach2, uint8_t blob)
 {
     uint16_t queue[GRRL_MAX_FEATURES];
@@ -115,7 +115,7 @@ static uint16_t grow_blob(struct grrl_perception *p, uint16_t start, float reach
     return n;
 }
 
-/* How many features of a body hang together with `start`; reached[] marks them. */
+/* How many features of a body are connected to `start`; reached[] marks them. */
 static uint16_t grow_in_body(const struct grrl_perception *p, uint8_t body, uint16_t start,
                              bool *reached)
 {
@@ -145,7 +145,7 @@ bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body)
     return false;
 }
 
-/* Features of a blob are those of a body, or the background's. */
+/* Assigns the features of a blob to a body, or to the background. */
 static void settle_blob(struct grrl_perception *p, uint8_t blob, bool is_body)
 {
     for (uint16_t j = 0; j < p->n_slots; j++) {

@@ -1,27 +1,27 @@
 /*
- * joint_pictures.c: what speaks for a slide before a camera that may move itself.
+ * joint_pictures.c: evidence for a slide seen by a camera that may move.
  *
- * Two things that slide past each other are tied if they turn together while they do, or come back
- * the same way. A camera that rolls turns everything together: only what turns before a background
- * counts.
+ * Two things that slide past each other are joined if they turn together as they slide, or slide
+ * back the same way. A rolling camera turns everything together, so only turns relative to a
+ * background count.
  */
 #include "perception/perception_internal.h"
 
-/* A background is so many times as wide as what moves before it. */
+/* A background is this many times as wide as the bodies in front of it. */
 #define WIDE 2.0f
 
-/* Of min_slide_m, from keyframe to keyframe: less is no sliding in a turn. */
+/* Share of min_slide_m from keyframe to keyframe: less does not count as sliding during a turn. */
 #define STEP_SHARE 0.5f
 
-/* A common turn counts so much for a slide at most, as in joints.c; and so much each further
+/* Limit on the evidence from a common turn, as in joints.c, and the evidence from each further
  * stroke. */
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
 
-/* The body against which the camera's own motion shows: the widest, if it is so wide that it lies
- * behind a and b and does not merely stand beside them. None: GRRL_MAX_LINKS. */
+/* The body that reveals the camera's own motion: the widest, if it is wide enough to lie behind a
+ * and b rather than beside them. GRRL_MAX_LINKS: there is none. */
 static uint8_t background_of(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     uint8_t widest = 0;
@@ -51,7 +51,7 @@ static float smaller(float a, float b)
     return a * a < b * b ? a : b;
 }
 
-/* Turns of a pair while it slid. */
+/* How far both bodies of a pair turned while sliding. */
 struct turns {
     float in_picture[2];
     float on_ground[2];
@@ -66,7 +66,7 @@ static void add_turns(struct turns *turns, const struct grrl_perception_pose *fr
     turns->on_ground[of] += ground->c * turn.s - ground->s * turn.c;
 }
 
-/* Variance of a body's turn in a keyframe: noise, model error, and what bends it (see joints.c). */
+/* Variance of a body's turn in a keyframe: noise, model error and bending (see joints.c). */
 static float turn_variance(const struct grrl_perception *p, uint8_t k, uint8_t body)
 {
     const struct grrl_perception_pose *pose = &p->pose[k][body];
@@ -76,7 +76,7 @@ static float turn_variance(const struct grrl_perception *p, uint8_t k, uint8_t b
            (pose->inertia + LEAST_INERTIA);
 }
 
-/* Where b is on the line of sliding, in the frame of a. */
+/* Position of b along the sliding axis, in the frame of a. */
 static float slid(const struct grrl_perception *p, uint8_t k, const struct grrl_joint_evidence *e)
 {
     struct grrl_vec2 d = grrl_origin_in(&p->pose[k][e->a], &p->pose[k][e->b]);
@@ -90,11 +90,11 @@ static bool sees_both(const struct grrl_perception *p, uint8_t k,
 }
 
 /*
- * How far a pair turned together, in chi squared, while it slid: a thing that is carried and then
- * leaves straight turns first and slides afterwards. The turn must show in the picture, which a
- * third body that turns by itself does not change, and against the background, which the camera
- * does not change, and on either body. Before the background itself nothing tells a turn from that
- * of the camera.
+ * How far a pair turned together while sliding, in chi squared. Turns at other times do not count:
+ * a thing that is carried and then leaves in a straight line turns first and slides afterwards.
+ * Both bodies must turn in the image, which rules out a third body turning by itself, and relative
+ * to the background, which rules out the camera. If one body of the pair is the background, its
+ * turn cannot be distinguished from that of the camera.
  */
 static float turn_while_sliding(const struct grrl_perception *p,
                                 const struct grrl_joint_evidence *e)
@@ -122,7 +122,7 @@ static float turn_while_sliding(const struct grrl_perception *p,
     return turns.variance > 0.0f ? turned * turned / turns.variance : 0.0f;
 }
 
-/* Strokes of a slide, there and back: whoever is untied does not come back the same way. */
+/* Strokes of a slide, back and forth: independent things do not return the same way. */
 static float count_strokes(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
 {
     float low = 0.0f; /* since the last turning point */

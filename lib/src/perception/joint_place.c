@@ -1,33 +1,33 @@
 /*
- * joint_place.c: where a joint lies, and what that says for it.
+ * joint_place.c: where a joint lies, as evidence for it.
  *
- * Joined bodies lie side by side, and a pivot lies on both. Their features tell how large they are;
- * a distance given once and for all would refuse a door and believe a toy.
+ * Joined bodies lie side by side, and a pivot lies on both. How large they are follows from their
+ * features: a fixed distance would reject a door and accept a toy.
  */
 #include "perception/perception_internal.h"
 
-/* What it tells before a camera that a pivot lies on both bodies: that of independent motions lies
- * anywhere within some lengths of them, 20 times the area of a body. */
+/* Evidence, as seen by a camera, from a pivot that lies on both bodies: that of independent motions
+ * lies anywhere within a few lengths of them, in 20 times the area of a body. */
 #define ON_BODIES 6.0f
 
-/* A pivot is off a body if the third nearest feature is farther than this share of half its extent.
- * Of ten features along a link the third nearest to its end is as far as half of that. */
+/* A pivot is off a body if the third nearest feature is farther away than this share of half the
+ * body's extent. With ten features along a link, the third nearest to its end is half as far. */
 #define OFF_BODY 0.9f
 
-/* A pivot farther from a body than so many times half its extent is none, as far as the body is
- * seen: a car in a bend has one, too. */
+/* A pivot farther from a body than this many times half its visible extent is rejected: a car in a
+ * bend has a pivot, too. */
 #define FAR_BODY 2.2f
 
-/* On a table, a pivot that lies farther than gap_m from a body's features may be so many times half
- * the body's extent farther away. A door seen only in its outer two thirds needs 1; with 2.2,
- * joints between separate objects are called in 0.2% of the states with two objects. */
+/* On a table, a pivot farther than gap_m from a body's features may be this many times half the
+ * body's extent farther away. A door seen only in its outer two thirds needs 1; with 2.2, joints
+ * between separate objects appear in 0.2% of the states with two objects. */
 #define FAR_ON_TABLE 1.5f
 
-/* Chi squared better than untied motion by which a joint may lie farther from its bodies than
- * gap_m: odds of 3 million to 1 (exp(30 / 2)), against a prior that a pivot lies on both. */
+/* A joint that beats independent motion by this much in chi squared may lie farther from its bodies
+ * than gap_m: odds of 3 million to 1 (exp(30 / 2)) outweigh the prior that a pivot lies on both. */
 #define CERTAIN 30.0f
 
-/* Distance from its bodies, in units of gap_m, that costs a joint 1 in the order: 40 mm, the width
+/* Distance from its bodies, in units of gap_m, that lowers a joint's order by 1: 40 mm, the width
  * of a link. */
 #define ORDER_SCALE 0.4f
 
@@ -43,8 +43,8 @@ float grrl_joint_half_extent(const struct grrl_perception *p, uint8_t body)
     return grrl_sqrt(far2);
 }
 
-/* The distance from a point in a body's frame to its third nearest feature: a few features beside
- * a joint may be counted to the wrong body. */
+/* The distance from a point in a body's frame to the third nearest feature: a few features near a
+ * joint may be assigned to the wrong body. */
 static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
 {
     float nearest2[3] = {1e9f, 1e9f, 1e9f};
@@ -64,7 +64,8 @@ static float distance_to_body(const struct grrl_perception *p, uint8_t body, str
     return grrl_sqrt(nearest2[2]);
 }
 
-/* Distance between the nearest features of two bodies in keyframe k. */
+/* Distance between two bodies in keyframe k: the smallest from a feature of b to the third nearest
+ * of a. */
 static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
 {
     const struct grrl_perception_pose *pb = &p->pose[k][b];
@@ -80,7 +81,7 @@ static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, 
     return best;
 }
 
-/* Whether a third body lies nearer to the pivot than `distance` when a was seen last. */
+/* Whether a third body lies closer to the pivot than `distance` in the last keyframe that saw a. */
 static bool lies_between(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                          float distance)
 {
@@ -98,9 +99,9 @@ static bool lies_between(const struct grrl_perception *p, const struct grrl_join
 }
 
 /*
- * The pivot of joined bodies is near both. Bodies with few features may have none close to it:
- * where the motion is beyond doubt and no other body lies nearer, the pivot may be farther away, by
- * their size. A camera has no scale, so that only the size counts there.
+ * The pivot of joined bodies is near both. Bodies with few features may have none close to it: if
+ * the motion leaves no doubt and no other body lies nearer, the pivot may be farther away,
+ * depending on their size. A camera gives no scale, so that only the size counts there.
  */
 static bool is_pivot_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                           float support)
@@ -126,7 +127,7 @@ bool grrl_joint_is_near(const struct grrl_perception *p, const struct grrl_joint
     float gap = p->config.gap_m;
     gap += support > CERTAIN ? grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b)
                              : 0.0f;
-    gap += e->fit.upper - e->fit.lower; /* drawn out, they are that much farther apart */
+    gap += e->fit.upper - e->fit.lower; /* fully extended, they are that much farther apart */
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
         if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)

@@ -1,80 +1,81 @@
 /*
- * joints.c: what ties two bodies together.
+ * joints.c: the joint between two bodies.
  *
- * Three models of the relative motion of a pair are compared on all keyframes that saw both:
+ * Three models of the relative motion of a pair are compared over all keyframes that saw both:
  *   revolute    one point of either body stays on one point of the other: 4 parameters
  *   prismatic   no relative turn, sliding along one line: 3 parameters
  *   free        anything; explains all, but pays for each keyframe in which it was needed
- * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint explains any
- * sliding), and a joint type is called only when the motion excites it.
+ * A pivot far from both bodies is unlikely a priori (otherwise a revolute joint would explain any
+ * sliding), and a joint type is accepted only if the motion excites it.
  *
- * All are compared in chi squared, -2 ln(likelihood), so that odds are exp(-chi2 / 2). The chi
- * squared of a model with m parameters over n keyframes, 2 residuals each, is expected to be 2 n -
- * m; what it has beyond that is its excess. This is the Laplace approximation of the marginal
- * likelihood with each parameter paid for at the rate of chi squared, 1, which is near enough:
- * revolute and prismatic differ by one parameter, and TYPE_MARGIN is 8. docs/perception.md derives
- * the fits and the evidence.
+ * All are compared in chi squared, -2 ln(likelihood), so odds are exp(-chi2 / 2). A model with m
+ * parameters over n keyframes, 2 residuals each, has an expected chi squared of 2 n - m; its excess
+ * is the rest. This is the Laplace approximation of the marginal likelihood with a charge of 1 in
+ * chi squared per parameter. That is accurate enough: revolute and prismatic differ by one
+ * parameter, and TYPE_MARGIN is 8. docs/perception.md derives the fits and the evidence.
  */
 #include "perception/perception_internal.h"
 
-/* Chi squared that free motion pays in a keyframe that needs it. A rigid pair, the 3 parameters of
- * free motion at 0, reaches 14 by chance once in 340 keyframes: less is no motion. */
+/* Chi squared that free motion pays in a keyframe that needs it. A rigid pair (the 3 parameters of
+ * free motion are 0) reaches 14 by chance once in 340 keyframes: less does not count as motion. */
 #define FREE_COST 14.0f
 
-/* And in all: ten keyframes. Neighbouring keyframes of a push are not independent, so that forty of
- * them must not make free motion impossible. */
+/* Limit on the total: ten keyframes. Neighbouring keyframes of a push are not independent, so forty
+ * of them must not make free motion impossible. */
 #define FREE_COST_MAX 140.0f
 
-/* Chi squared by which a type must be better than the other, and than free motion: odds of 55 to 1
- * (exp(8 / 2)), a probability of 0.98. */
+/* Chi squared by which a type must beat the other type and free motion: odds of 55 to 1 (exp(8 /
+ * 2)), a probability of 0.98. */
 #define TYPE_MARGIN 8.0f
 
-/* The most a keyframe of a push counts against a joint: as much as free motion pays for it, once in
- * 1,100 keyframes by chance. A few frames of a fast body can lie aside by ten standard deviations.
- * Of PRPRPRP with 20% missing and 2% outliers 1.0 instead of 2.5% ended at the cap (seed 47000). */
+/* The most a keyframe of a push counts against a joint: the cost of free motion, reached by chance
+ * once in 1,100 keyframes. A few frames of a fast body can be off by ten standard deviations. With
+ * 20% missing points and 2% outliers, this lowered the trials of PRPRPRP that ended at the cap from
+ * 2.5 to 1.0% (seed 47000). */
 #define MOVING_MISS_MAX FREE_COST
 
-/* Chi squared in favour of a joint where the motion tells nothing: odds of e to 1. Things side by
- * side on the table are rather joined than not. */
+/* Chi squared in favour of a joint if the motion shows nothing: odds of e to 1. Things side by side
+ * on the table are more likely joined than not. */
 #define JOINT_PRIOR 2.0f
 
-/* And before a camera that may move, where what is seen need not be one thing: independent until
- * proven joined. Odds of 20 to 1 against a joint that nothing has tested. */
+/* The same for a camera that may move, where the scene need not be one object: things are
+ * independent until proven joined. Odds of 20 to 1 against an untested joint. */
 #define INDEPENDENT_PRIOR (-6.0f)
 
-/* Bodies whose sizes change against one another by this share do not lie in one plane. */
+/* Bodies whose relative size changes by this share are not in one plane. */
 #define SIZES_DIFFER 0.1f
 
-/* A joint less likely than this is not believed: it is no joint of the model. */
+/* A joint less likely than this does not enter the model. */
 #define BELIEVED 0.5f
 
-/* A common turn counts so much for a slide at most: it leaves odds of 3 million to 1, more would
- * only hide what later pushes say. */
+/* Limit on the evidence for a slide from a common turn: odds of 3 million to 1. More would only
+ * hide the evidence of later pushes. */
 #define TURN_EVIDENCE_MAX 30.0f
 
-/* Of each further push that slid along the same line. Untied things would go within 12 degrees of
- * it, either way, once in exp(4 / 2) = 7 pushes. */
+/* Evidence from each further push that slid along the same line. Independent things would move
+ * within 12 degrees of it, either way, once in exp(4 / 2) = 7 pushes. */
 #define PUSH_EVIDENCE 4.0f
 
-/* Excess beyond which a type does not explain the motion: this, and so many standard deviations of
- * chi squared over all keyframes (2 sqrt(n), for 2 n residuals). Noise alone never gets there (4 in
- * 10^6 trials of ten keyframes); the margin is for bodies that are not quite rigid. */
+/* Excess above which a type does not explain the motion: this plus a number of standard deviations
+ * of chi squared over all keyframes (2 sqrt(n) each, for 2 n residuals). Noise alone hardly ever
+ * gets there (4 in 10^6 trials of ten keyframes); the margin is for bodies that are not quite
+ * rigid. */
 #define MISFIT_BASE 10.0f
 #define MISFIT_SIGMAS 5.0f
 
-/* Of the excess, in the order of joints equally well supported: it decides between two, and is
- * small beside WELL_SUPPORTED within the limits above. */
+/* Weight of the excess in the order of joints that are equally well supported: it decides between
+ * two, but within the limits above it is small compared with WELL_SUPPORTED. */
 #define MISFIT_WEIGHT 0.1f
 
-/* Chi squared better than untied motion; more makes no joint likelier than another (odds of 20 to
- * 1). */
+/* Gain over independent motion in chi squared beyond which one joint ranks no higher than another
+ * (odds of 20 to 1). */
 #define WELL_SUPPORTED 6.0f
 
-/* A range of motion tells a type if it is so many standard deviations of one keyframe, see
+/* A range of motion excites a type if it is this many standard deviations of one keyframe; see
  * FAR_SIGMAS in apart.c. */
 #define EXCITED_SIGMAS 5.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
 
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
@@ -125,7 +126,7 @@ static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struc
 }
 
 /* Variance per axis of the distance between a point of a and a point of b, given their squared
- * distances from the bodies' origins; model error of either body included. */
+ * distances from the origins of the bodies; includes the model error of both. */
 static float point_variance(const struct grrl_perception *p, const struct motion *motion,
                             const struct relative *r, float lever_a2, float lever_b2)
 {
@@ -139,7 +140,7 @@ static float point_variance(const struct grrl_perception *p, const struct motion
 static float turn_variance(const struct grrl_perception *p, const struct motion *motion,
                            const struct relative *r)
 {
-    /* the model error of a body's n features acts on its turn like noise of one frame each */
+    /* the model error of a body's n features affects its turn like noise of one frame each */
     float model = grrl_perception_model_error(p);
     float model2 = model * model;
     return (motion->noise2 + 4.0f * model2) *
@@ -153,9 +154,9 @@ static float turn_from_mean(const struct motion *motion, const struct relative *
     return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
 }
 
-/* Whether a keyframe that the fit misses by chi2 may be wrong itself. At rest many frames are
- * averaged, in a push few: a gap and an outlier can draw a fast body aside, and outweigh all else.
- */
+/* Whether a keyframe that the fit misses by chi2 may itself be wrong. At rest many frames are
+ * averaged, in a push only a few: a gap and an outlier can displace a fast body and outweigh
+ * everything else. */
 static bool is_doubtful(const struct motion *motion, uint8_t k, float chi2)
 {
     return !motion->at_rest[k] && chi2 > MOVING_MISS_MAX;
@@ -188,10 +189,9 @@ static struct pivot_sums sum_for_pivot(const struct grrl_perception *p, const st
 }
 
 /*
- * Least squares for the pivot, a in the frame of body a and b in that of body b. They minimise
- *     sum w |a - R b - d|^2 + |a|^2 / sa^2 + |b|^2 / sb^2,
- * where R and d are turn and shift of b's frame in a's. With M = sum w R, D = sum w d and
- * E = sum w R^T d the normal equations are
+ * Least squares for the pivot, a in the frame of body a and b in that of body b. They minimise sum
+ * w |a - R b - d|^2 + |a|^2 / sa^2 + |b|^2 / sb^2, where R and d are the turn and shift of b's
+ * frame in a's. With M = sum w R, D = sum w d and E = sum w R^T d the normal equations are
  *     (W + 1 / sa^2) a - M b = D,    -M^T a + (W + 1 / sb^2) b = -E.
  * M is a rotation times a number, so that M^T M = |m|^2 I, and eliminating a leaves one scalar, the
  * Schur complement: schur b = M^T D / (W + 1 / sa^2) - E. 1 / schur is the variance of b.
@@ -225,7 +225,8 @@ static float pivot_miss(const struct grrl_perception *p, const struct motion *mo
 }
 
 /* The pivot, how well the motion agrees with it, and the range of the turn. The weights depend on
- * how far the pivot is from either body: half their extent at first, the pivot found after that. */
+ * the distance of the pivot from both bodies: half their extent in the first round, then the pivot
+ * found. */
 static void fit_revolute(const struct grrl_perception *p, const struct motion *motion, float ha,
                          float hb, struct grrl_joint_fit *fit)
 {
@@ -267,7 +268,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     fit->axis_variance = 0.0f;
 }
 
-/* The sliding point half way between the bodies, so that the turn noise of both counts the same. */
+/* The sliding point halfway between the bodies, so that the turn noise of both counts equally. */
 static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r,
                                     struct grrl_vec2 middle)
 {
@@ -276,11 +277,11 @@ static struct grrl_vec2 slide_point(const struct motion *motion, const struct re
                               r->d.y - 0.5f * (middle.y + turn * middle.x)};
 }
 
-/* A sliding pair: where b's origin is in a's frame in the mean, not weighted, .. */
+/* A sliding pair: the mean of b's origin in a's frame, not weighted, ... */
 struct slide {
     struct grrl_vec2 middle;
-    float lever2;          /* .. its squared distance from the point half way between the bodies, */
-    struct grrl_vec2 mean; /* .. a point of the line, and the sum of weights */
+    float lever2;          /* ... its squared distance from the point halfway between the bodies, */
+    struct grrl_vec2 mean; /* ... a point on the line, and the sum of weights */
     float w;
 };
 
@@ -307,8 +308,8 @@ static struct slide find_middle(const struct grrl_perception *p, const struct mo
     return slide;
 }
 
-/* The line: total least squares, the principal axis of the weighted positions. Returns the sum of
- * squares along it over the variance, whose inverse is the variance of the direction. */
+/* The line by total least squares: the principal axis of the weighted positions. Returns the sum of
+ * squares along it divided by the variance; its inverse is the variance of the direction. */
 static float find_slide_axis(const struct grrl_perception *p, const struct motion *motion,
                              const struct slide *slide, struct grrl_vec2 *axis)
 {
@@ -366,7 +367,8 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
     fit->axis_variance = 1.0f / (major + 1.0f);
 }
 
-/* What free motion pays: the keyframes that differ from a rigid pair, up to a limit. */
+/* The cost of free motion: it pays for the keyframes that differ from a rigid pair, up to a limit.
+ */
 static float free_cost(const struct grrl_perception *p, const struct motion *motion)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
@@ -386,9 +388,9 @@ static float free_cost(const struct grrl_perception *p, const struct motion *mot
 }
 
 /*
- * What the motion says for a pivot beyond first order: any relative motion that turns steadily and
- * drifts steadily has a pivot; only the curvature of the path, half the turn squared times the
- * distance from the pivot, tells that it stays where it is.
+ * Evidence for a pivot beyond first order: any relative motion with a steady turn and a steady
+ * drift has a pivot; only the curvature of the path, half the squared turn times the distance from
+ * the pivot, shows that it stays in place.
  */
 static float curvature_evidence(const struct grrl_perception *p, const struct motion *motion,
                                 const struct grrl_joint_fit *fit)
@@ -419,8 +421,8 @@ static float curvature_evidence(const struct grrl_perception *p, const struct mo
 }
 
 /*
- * What the motion says for sliding: two things that move in parallel look the same. They are tied
- * if they turned together, or slid along the same line in several pushes.
+ * Evidence for sliding: two things that move in parallel look the same. They are joined if they
+ * turned together, or slid along the same line in several pushes.
  */
 static float sliding_evidence(const struct grrl_perception *p, const struct motion *motion,
                               const struct grrl_joint_fit *fit)
@@ -445,8 +447,8 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
 }
 
 /*
- * Chi squared of untied motion. A free motion explains also what a joint explains, and is then as
- * likely as the joint but for what the motion tells beyond first order.
+ * Chi squared of independent motion. It can also mimic the motion of a joint, and is then as likely
+ * as the joint except for the evidence beyond first order.
  */
 static float untied_cost(const struct grrl_perception *p, const struct motion *motion,
                          const struct grrl_joint_evidence *e, float free)
@@ -477,8 +479,9 @@ static void model_probabilities(const float *chi2, float *probability)
 }
 
 /*
- * Whether two bodies keep their sizes against one another. In one plane seen from above they do,
- * whatever the camera does; what nears the camera alone is on no joint of that plane.
+ * Whether the relative size of two bodies is constant. It is for bodies in one plane seen from
+ * above, whatever the camera does; a body that approaches the camera alone is on no joint of that
+ * plane.
  */
 static bool sizes_agree(const struct motion *motion)
 {
@@ -493,7 +496,7 @@ static bool sizes_agree(const struct motion *motion)
     return most - least < SIZES_DIFFER * most;
 }
 
-/* Weighs the evidence for a joint between a and b; false: none is supported. */
+/* Weighs the evidence for a joint between a and b; false: no joint is supported. */
 bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
                        struct grrl_joint_evidence *e)
 {

@@ -5,25 +5,25 @@
 
 #include <string.h>
 
-/* Exponent of the first bin, biased by 127: 2^-24 m or 60 nm, below what a coordinate of a metre
- * can tell in single precision. */
+/* Exponent of the first bin, biased by 127: 2^-24 m or 60 nm, below the resolution of a coordinate
+ * of one metre in single precision. */
 #define FINEST 103
 
-/* Median size of a normal variable in standard deviations: the 75% quantile. */
+/* Median absolute value of a normal variable in standard deviations: the 75% quantile. */
 #define MEDIAN_OF_NORMAL 0.6745f
 
 /* The variance of x1 - 2 x2 + x3 is (1 + 4 + 1) times that of x. */
 #define ROOT_6 2.4494897f
 
-/* Differences beyond this are outliers and motion: of normal ones 6 in 10^7 are. */
+/* Differences beyond this are outliers and motion: normal noise exceeds it 6 times in 10^7. */
 #define TRIM_SIGMAS 5.0f
 
 #define MAX_SAMPLES UINT32_C(0x7fffffff) /* so that twice as many fit in 32 bits */
 
 enum {
-    BITS = 4,   /* bins an octave: 2 to the BITS, of 4 to 6% each; the median is interpolated */
-    ROUNDS = 4, /* of trimming; the median hardly moves after two */
-    PROBES = 8  /* places looked at for a track */
+    BITS = 4,   /* 2^BITS bins per octave, 4 to 6% wide each; the median is interpolated */
+    ROUNDS = 4, /* of trimming; the median hardly changes after two */
+    PROBES = 8  /* slots searched for a track */
 };
 
 void grrl_noise_init(struct grrl_noise *noise)
@@ -31,7 +31,7 @@ void grrl_noise_init(struct grrl_noise *noise)
     memset(noise, 0, sizeof *noise);
 }
 
-/* By exponent and leading bits of the number: its logarithm, nearly. */
+/* From the exponent and the leading bits of the number: approximately its logarithm. */
 static uint32_t bin_of(float size)
 {
     uint32_t bits;
@@ -42,7 +42,7 @@ static uint32_t bin_of(float size)
     return place < GRRL_NOISE_BINS ? place : GRRL_NOISE_BINS - 1;
 }
 
-/* Where in a bin a number lies that has `share` of the bin below it. */
+/* The number in a bin that has `share` of the bin below it. */
 static float size_at(uint32_t bin, float share)
 {
     uint32_t bits[2] = {(bin + ((uint32_t)FINEST << BITS)) << (23 - BITS),
@@ -52,8 +52,8 @@ static float size_at(uint32_t bin, float share)
     return edge[0] + share * (edge[1] - edge[0]);
 }
 
-/* The track of an id, or a free one near it; NULL: there is no room. A track that was not seen in
- * the last frame is free. */
+/* The track of an id, or a free one near its hash; NULL: no room. A track not seen in the last
+ * frame is free. */
 static struct grrl_noise_track *find_track(struct grrl_noise *noise, int32_t id)
 {
     uint32_t home = ((uint32_t)id * UINT32_C(2654435761)) >> 7;
@@ -120,7 +120,7 @@ enum grrl_status grrl_noise_estimate(const struct grrl_noise *noise, float *sigm
         return GRRL_ERR_NONE;
     if (2 * noise->bin[0] >= noise->n_samples)
         return GRRL_ERR_NUMBER;
-    /* Outliers draw a median a little: those far beyond it are left out, and it is taken again. */
+    /* Outliers shift the median a little: drop those far beyond it and take it again. */
     uint32_t end = GRRL_NOISE_BINS;
     float spread = 0.0f;
     for (int round = 0; round < ROUNDS; round++) {

@@ -1,10 +1,10 @@
 /*
  * outliers.c: points of a push that no motion explains.
  *
- * Three frames make a keyframe of a push, and an outlier near enough to pass for motion draws their
- * mean after it. Such a mean lies off its body while the body's other features do not, and the
- * feature itself is back in the next keyframe. A part of the body that moves apart is more than two
- * features, and at rest it stays where it went.
+ * A keyframe of a push averages three frames, and an outlier close enough to pass for motion shifts
+ * their mean. Such a mean lies off its body while the other features of the body do not, and the
+ * feature is back in the next keyframe. A part of the body that moves relative to the rest has more
+ * than two features, and stays where it went once at rest.
  */
 #include "perception/perception_internal.h"
 
@@ -12,11 +12,12 @@
  * Rayleigh distribution: exp(-5^2 / 2)). */
 #define OFF_SIGMAS 5.0f
 
-/* Features that may be off in one keyframe of a body; more are a motion. At 2% outliers and three
- * frames a keyframe, three or more of ten features are off by chance once in fifty keyframes. */
+/* The most features that may be off in one keyframe of a body; more indicate motion. With 2%
+ * outliers and three frames per keyframe, three or more of ten features are off by chance once in
+ * fifty keyframes. */
 #define ALONE_MAX 2
 
-/* A feature is off seldom if that is in one of this many keyframes. */
+/* A feature is rarely off if it is off in at most one of this many keyframes. */
 #define SELDOM 4
 
 static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
@@ -29,7 +30,7 @@ static bool is_off(const struct grrl_perception *p, uint16_t slot, uint8_t k)
     return d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 
-/* Whether a feature is off in few of the keyframes that are new: one in four. */
+/* Whether a feature is off in at most one in four of the new keyframes. */
 static bool is_seldom_off(const struct grrl_perception *p, uint16_t slot)
 {
     unsigned off = 0;
@@ -43,8 +44,8 @@ static bool is_seldom_off(const struct grrl_perception *p, uint16_t slot)
     return SELDOM * off <= seen + SELDOM - 1;
 }
 
-/* Takes the features of a body that are off it in keyframe k out of that keyframe if they are few
- * and seldom off; returns how many. */
+/* Removes features that are off their body in keyframe k from that keyframe, if they are few and
+ * rarely off; returns how many. */
 static uint32_t drop_from(struct grrl_perception *p, uint8_t body, uint8_t k)
 {
     uint16_t off[ALONE_MAX];

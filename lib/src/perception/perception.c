@@ -1,44 +1,44 @@
 /*
- * perception.c: tracks and keyframes, what was seen; and the order of an update.
+ * perception.c: tracks and keyframes (the observations), and the order of an update.
  */
 #include "perception/perception_internal.h"
 
 #include <string.h>
 
 enum {
-    /* Averaged into one rest. The noise of their mean is 0.0007 / sqrt(60) = 0.00009 m: what limits
-     * after that is the model error (0.0001 m). */
+    /* Frames averaged into one rest. The noise of their mean is 0.0007 / sqrt(60) = 0.00009 m;
+     * beyond that the model error (0.0001 m) is the limit. */
     REST_FRAMES_MAX = 60,
-    /* Averaged into one keyframe of a push unless the configuration says otherwise: enough that an
-     * outlier is outvoted two to one, few enough that the mean of points on a bent path stays near
-     * the path. */
+    /* Frames averaged into one keyframe of a push unless configured otherwise: enough to outvote an
+     * outlier two to one, few enough that the mean of points on a curved path stays near the path.
+     */
     PUSH_FRAMES = 3,
-    /* A point that stays away this long is another feature: five outliers in a row befall a feature
-     * with 2% outliers once in 3 * 10^8 frames. */
+    /* A point that stays away this many frames is another feature: with 2% outliers, a feature has
+     * five in a row once in 3 * 10^8 frames. */
     JUMPS_UNTIL_NEW = 5,
-    /* Features that have moved make a keyframe, or end a rest: fewer can be outliers. */
+    /* This many moved features start a keyframe, or end a rest; fewer may be outliers. */
     MOVED_FEATURES = 3,
-    /* In a push features count if they were seen in all frames of the window, unless those are
+    /* In a push, features count if they were seen in all frames of the window, unless these are
      * fewer than one in this many. */
     COMPLETE_SHARE = 3,
-    /* Of the features in a window one in this many, in no keyframe so far, makes a keyframe: where
-     * they begin is where their motion starts. */
+    /* If one in this many features of a window is in no keyframe yet, the window becomes a
+     * keyframe: their motion starts where they begin. */
     NEW_SHARE = 4,
-    /* And one in this many of all that are seen must have left its mean until a rest is none. */
+    /* A rest ends only if one in this many visible features has left its mean. */
     SLIDING_SHARE = 10
 };
 
-/* Points of one place at rest lie this near their mean: of 6 * 10^7 points (exp(-6^2 / 2) of the
- * Rayleigh distribution) one is farther by chance, and outliers found a heap of their own. */
+/* The points of a stationary feature lie this close to their mean: one in 6 * 10^7 is farther away
+ * by chance (exp(-6^2 / 2), Rayleigh distribution). Outliers start a cluster of their own. */
 #define REST_SIGMAS 6.0f
 
-/* A feature whose mean at rest is this far from its mean at the rest before has moved. The noise of
- * one frame: means of ten frames have less than half of it, so that these are nine standard
- * deviations of their difference. */
+/* A feature has moved if its mean at rest differs this much from its mean at the previous rest, in
+ * units of the noise of one frame. Means of ten frames have less than half that noise, so this is
+ * nine standard deviations of their difference. */
 #define MOVED_SIGMAS 4.0f
 
-/* A rest adds this many times as much as a keyframe of a push that differs as much from its
- * predecessor: more frames are averaged in it. */
+/* A rest is worth this many times as much as a keyframe of a push that differs as much from its
+ * predecessor, since it averages more frames. */
 #define REST_NOVELTY 2.0f
 
 void grrl_perception_config_default(struct grrl_perception_config *config)
@@ -122,7 +122,7 @@ static void forget_history(struct grrl_perception *p, uint16_t slot)
     p->jumps[slot] = 0;
 }
 
-/* A slot that no keyframe of the memory has seen can serve another feature. */
+/* A slot can be reused for another feature if no stored keyframe has seen it. */
 static bool slot_is_stale(const struct grrl_perception *p, uint16_t slot)
 {
     for (uint8_t k = 0; k < p->n_keyframes; k++)
@@ -143,7 +143,7 @@ static void rebuild_hash(struct grrl_perception *p)
     }
 }
 
-/* The slot of a feature, a new one for a new id; false: all slots are taken. */
+/* The slot of a feature, a new one for a new id; false: all slots are in use. */
 static bool find_slot(struct grrl_perception *p, int32_t id, uint16_t *slot, bool *is_new)
 {
     uint32_t size = (uint32_t)(sizeof p->slot_of_hash / sizeof p->slot_of_hash[0]);
@@ -177,8 +177,8 @@ static bool find_slot(struct grrl_perception *p, int32_t id, uint16_t *slot, boo
 
 /*
  * Whether a point continues its track; counts and drops outliers, restarts a track that stays away.
- * An outlier near enough to pass must not make one of the next point: it may continue the point
- * before.
+ * An outlier that passed must not turn the next point into one, so a point may also continue the
+ * point before the last.
  */
 static bool accept_point(struct grrl_perception *p, uint16_t slot, bool is_new,
                          struct grrl_vec2 point)
@@ -215,7 +215,7 @@ static struct grrl_vec2 mean_of(const struct grrl_perception_sum *sum)
     return (struct grrl_vec2){sum->x * scale, sum->y * scale};
 }
 
-/* The larger heap: how many points, and their mean. */
+/* The larger cluster: number of points and their mean. */
 static uint8_t window_mean(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 *mean)
 {
     const struct grrl_perception_sum *a = &p->window.heap[0][slot];
@@ -227,8 +227,8 @@ static uint8_t window_mean(const struct grrl_perception *p, uint16_t slot, struc
 }
 
 /*
- * Adds a point to the heap it lies near, so that one point far off does not draw the mean after it.
- * What lies near neither heap replaces the second while that is a single point.
+ * Adds a point to the cluster it is close to, so that a single point far away does not shift the
+ * mean. A point close to neither replaces the second cluster while that is a single point.
  */
 static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_vec2 point)
 {
@@ -249,7 +249,7 @@ static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_ve
     }
 }
 
-/* How many features of the window lie farther than `distance` from a keyframe. */
+/* How many features of the window are farther than `distance` from their place in a keyframe. */
 static unsigned moved_since(const struct grrl_perception *p,
                             const struct grrl_perception_keyframe *key, float distance)
 {
@@ -271,7 +271,8 @@ static bool is_in_a_keyframe(const struct grrl_perception *p, uint16_t slot)
     return false;
 }
 
-/* Whether many features of the window are in no keyframe: tracks that began during the push. */
+/* Whether many features of the window are in no keyframe yet: their tracks began during the push.
+ */
 static bool many_are_new(const struct grrl_perception *p)
 {
     unsigned seen = 0;
@@ -286,7 +287,7 @@ static bool many_are_new(const struct grrl_perception *p)
     return fresh >= MOVED_FEATURES && NEW_SHARE * fresh >= seen;
 }
 
-/* What a keyframe adds to its predecessor: the sum of squared displacements. */
+/* The novelty of a keyframe: the sum of squared displacements since its predecessor. */
 static float novelty(const struct grrl_perception *p, uint8_t k)
 {
     float sum = 0.0f;
@@ -301,7 +302,7 @@ static float novelty(const struct grrl_perception *p, uint8_t k)
     return p->keyframe[k].at_rest ? REST_NOVELTY * sum : sum;
 }
 
-/* Makes room: the keyframe that adds least goes, never the first. */
+/* Makes room by dropping the keyframe with the least novelty, never the first. */
 static void thin_keyframes(struct grrl_perception *p)
 {
     uint8_t least = 1;
@@ -320,9 +321,9 @@ static void thin_keyframes(struct grrl_perception *p)
 }
 
 /*
- * How many points a feature needs in a window of a push. Means of different frames lie apart by
- * what moved between them, so that only features seen in all frames count; where hardly any were,
- * all do.
+ * How many points a feature needs in a window of a push. Means over different frames differ by the
+ * motion between these, so only features seen in all frames count; if there are hardly any, all
+ * count.
  */
 static uint8_t points_needed(const struct grrl_perception *p)
 {
@@ -359,7 +360,7 @@ static struct grrl_perception_keyframe *new_keyframe(struct grrl_perception *p)
     return &p->keyframe[p->n_keyframes - 1];
 }
 
-/* Two rests between which nothing moved are one: the averages join. */
+/* Two rests with no motion between them are one: their averages are combined. */
 static bool join_rest(struct grrl_perception *p)
 {
     struct grrl_perception_keyframe *key = &p->keyframe[p->n_keyframes - 1];
@@ -380,7 +381,7 @@ static bool join_rest(struct grrl_perception *p)
     return true;
 }
 
-/* The rest being averaged becomes, or refreshes, the last keyframe. */
+/* Stores the rest being averaged as the last keyframe, or updates that. */
 static void commit_rest(struct grrl_perception *p)
 {
     if (p->window.frames == 0)
@@ -418,7 +419,8 @@ static void window_add(struct grrl_perception *p, const struct grrl_frame *frame
         p->counts.features_high = p->n_slots;
 }
 
-/* At rest nothing leaves its mean; what does is still sliding, and averaging starts anew. */
+/* At rest no feature leaves its mean. If some do, things are still sliding and averaging starts
+ * again. */
 static bool still_sliding(const struct grrl_perception *p, const struct grrl_frame *frame)
 {
     unsigned away = 0;

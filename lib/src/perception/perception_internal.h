@@ -1,19 +1,19 @@
 /*
- * perception_internal.h: the rooms behind perception.h.
+ * perception_internal.h: the modules behind perception.h.
  *
- *   perception.c            tracks and keyframes: what was seen
+ *   perception.c            tracks and keyframes: the observations
  *   rigid.c                 poses and residuals of features taken as one rigid body
- *   initial_segmentation.c  what may be a body before anything has moved
+ *   initial_segmentation.c  candidate bodies before anything has moved
  *   rest_error.c            position error at rest that averaging does not remove
  *   outliers.c              points that no motion explains
  *   consensus.c             the largest set of features that moved as one
- *   cut.c                   the line along which two bodies part
+ *   cut.c                   the line that best separates two bodies
  *   assign.c                which body a feature moves with
- *   apart.c                 whether two bodies moved apart
- *   bodies.c                which features belong together: split, reassign, merge
- *   joints.c                what ties two bodies together
- *   joint_place.c           where a joint lies, and what that says for it
- *   joint_pictures.c        what speaks for a slide before a camera that may move
+ *   apart.c                 whether two bodies moved relative to each other
+ *   bodies.c                which features form a body: split, reassign, merge
+ *   joints.c                the joint between two bodies
+ *   joint_place.c           where a joint lies, as evidence for it
+ *   joint_pictures.c        evidence for a slide seen by a camera that may move
  *   structure.c             the joints of all bodies, and the model
  */
 #ifndef GRRL_PERCEPTION_INTERNAL_H
@@ -21,8 +21,8 @@
 
 #include "grrl/perception/perception.h"
 
-/* Of one squared residual in units of its variance, 4 standard deviations: noise reaches it once in
- * 3,000 points, and an outlier weighs no more. */
+/* Cap on one squared residual in units of its variance, 4 standard deviations: noise reaches it
+ * once in 3,000 points, and an outlier costs no more. */
 #define GRRL_COST_CAP 16.0f
 
 static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
@@ -32,19 +32,19 @@ static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 }
 
 /*
- * rest_error.c. What points that keep their place are off from rest to rest beyond noise, per axis,
- * m; 0: no more than the configured model error, or not known yet.
+ * rest_error.c. The error of stationary points from rest to rest beyond noise, per axis, m; 0: no
+ * more than the configured model error, or not known yet.
  */
 float grrl_rest_error(const struct grrl_perception *p);
 
-/* The larger of the error found and the one configured. */
+/* The larger of the measured and the configured error. */
 static inline float grrl_perception_model_error(const struct grrl_perception *p)
 {
     float given = p->config.model_error_m;
     return p->rest_error_m > given ? p->rest_error_m : given;
 }
 
-/* From a body's frame to the world and back; the body may look larger than its shape. */
+/* From a body's frame to the world and back; the body may appear larger than its shape. */
 static inline struct grrl_vec2 grrl_to_world(const struct grrl_perception_pose *pose,
                                              struct grrl_vec2 local)
 {
@@ -74,38 +74,38 @@ static inline float grrl_perception_variance(const struct grrl_perception *p, ui
 }
 
 /*
- * rigid.c. A set of features is a list of slots. `shape` holds one point a slot in the body's
- * frame, whose origin is the features' centroid.
+ * rigid.c. A set of features is a list of slots. `shape` holds one point per slot in the body's
+ * frame, whose origin is the centroid of the features.
  */
 
 /*
- * How much larger a body looks than its shape, given the length of the sum of products and the
- * inertia of a fit. A priori 0 within some standard deviation, so that few features do not breathe
- * with their noise.
+ * How much larger a body appears than its shape, given the length of the sum of products and the
+ * inertia of a fit. The prior is normal about 0, so that a body of few features does not grow and
+ * shrink with their noise.
  */
 float grrl_rigid_growth(const struct grrl_perception *p, float length, float inertia);
 
-/* Poses in all keyframes and the shape that fit best. poses[k] for k < n_keyframes. */
+/* The poses in all keyframes, and the shape, that fit best. poses[k] for k < n_keyframes. */
 void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                     struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride);
 
 /*
- * The poses once more, in each keyframe without the points that lie off the body: the farthest
- * goes, and the next, until none is off. More than a third are no outliers, and the pose stays as
- * it was.
+ * Fits the poses again, in each keyframe without the points off the body: the farthest is removed
+ * first, then the next, until none is off. More than a third are not outliers, and the pose stays
+ * as it was.
  */
 void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                       const struct grrl_vec2 *shape, struct grrl_perception_pose *poses,
                       size_t stride);
 
-/* Where slot's point lies in the frame of these poses: the mean over all keyframes. */
+/* Where the point of `slot` lies in the frame of these poses: the mean over all keyframes. */
 bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       const struct grrl_perception_pose *poses, size_t stride,
                       struct grrl_vec2 *local);
 
 /*
- * Squared residuals of a slot over their variance, each cut at `cap`, summed over the keyframes;
- * 2 is expected of each. *n counts the keyframes where both were seen.
+ * Squared residuals of a slot over their variance, each capped at `cap`, summed over the keyframes;
+ * each is 2 on average. *n counts the keyframes that saw both.
  */
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
                       const struct grrl_perception_pose *poses, size_t stride, float cap,
@@ -117,27 +117,28 @@ uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_
 /* initial_segmentation.c: the candidate bodies in the first keyframe. */
 void grrl_initial_segmentation(struct grrl_perception *p);
 
-/* Whether enough features of a body lay densely there, without those of others between them. */
+/* Whether enough features of a body lay densely there by themselves, not linked by those of others.
+ */
 bool grrl_initial_is_compact(const struct grrl_perception *p, uint8_t body);
 
-/* outliers.c: takes lone points off their bodies out of the keyframes of pushes not yet examined;
- * whether there were any. */
+/* outliers.c: removes isolated points that lie off their bodies from the keyframes of pushes not
+ * yet examined. Returns whether there were any. */
 bool grrl_outliers_drop(struct grrl_perception *p);
 
 /*
- * consensus.c. The misfit of a body with these slots: the largest of its keyframes and of all
- * together, in standard deviations of chi squared; score[k] is that of keyframe k.
+ * consensus.c. The misfit of a body with these slots: the largest over its keyframes and over all
+ * of them together, in standard deviations of chi squared; score[k] is that of keyframe k.
  */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                             uint8_t body, float *score);
 
-/* The keyframe from which motions are told: features that it did not see take no part. true: tracks
- * are shorter than the motion, so that they are many. */
+/* The keyframe relative to which motions are measured: features it did not see take no part. true:
+ * tracks are shorter than the motion, so there are many such features. */
 bool grrl_consensus_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                               const float *score, uint8_t *reference);
 
-/* The largest set among `slots` that moved as one in the keyframes of highest score; returns its
- * size, members[] holds it. */
+/* The largest set among `slots` that moved as one in the keyframes with the highest scores; returns
+ * its size, members[] holds it. */
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              const float *score, uint16_t *members);
 
@@ -150,44 +151,45 @@ struct grrl_rigid_group {
 };
 
 /*
- * cut.c: the straight cut that parts the features best, if it is better than what they are now:
- * those of `body` and the others. Returns by how much in chi squared; part[] holds one side.
+ * cut.c: the straight cut that separates the features best, if it beats the present partition into
+ * those of `body` and the others. Returns the gain in chi squared; part[] holds one side.
  */
 float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_group *together,
                     uint8_t body, uint16_t *part, uint16_t *n_part);
 
-/* The same for two links that cross: no straight cut parts them. */
+/* The same for two links that cross, which no straight cut separates. */
 float grrl_cut_best_cross(const struct grrl_perception *p, const struct grrl_rigid_group *together,
                           uint8_t body, uint16_t *part, uint16_t *n_part);
 
-/* By how many standard deviations of chi squared a body's features part along some line more than
- * noise explains; 0: they do not. */
+/* By how many standard deviations of chi squared the features of a body separate along some line,
+ * beyond noise; 0: they do not. */
 float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body);
 
 /*
- * assign.c. Whether a feature left its place at any time; a body has moved if more of its features
- * have than have not.
+ * assign.c. Whether a feature has ever moved. A body has moved if most of its features have.
  */
 bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot);
 bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body);
 
-/* Whether features of bodies a and b may be in one: their blobs are one, or both moved. */
+/* Whether features of bodies a and b may share one body: they come from the same blob, or both
+ * moved. */
 bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* The body a feature moves with, or GRRL_FEATURE_.. */
 uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
 
-/* Whether a feature that is in no body moves with one, seen in two keyframes with it at least. */
+/* Whether an unassigned feature moves with `body`; both must be visible in at least two keyframes.
+ */
 bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body);
 
-/* Whether a feature of a body of n_own features would be no worse off in some other body. */
+/* Whether a feature of a body of n_own features fits some other body as well. */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
 
-/* apart.c: how far two bodies moved apart from rest to rest, and the variances of that. */
+/* apart.c: the range of relative motion of two bodies from rest to rest, and its variances. */
 struct grrl_apart_range {
     float turn;
-    float shift2;   /* squared, of the point half way between them */
-    float turn_var; /* the largest: noise alone must not look far enough */
+    float shift2;   /* squared, of the point halfway between them */
+    float turn_var; /* the largest, so that noise alone does not look like motion */
     float shift_var;
 };
 
@@ -198,17 +200,18 @@ struct grrl_apart_range grrl_apart_range_between(const struct grrl_perception *p
 void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
                          struct grrl_rigid_group *together);
 
-/* Evidence that two bodies moved apart, in chi squared: what separate poses save beyond their
- * parameters, in single keyframes. */
+/* Evidence for relative motion of two bodies, in chi squared: what separate poses save in each
+ * keyframe beyond the cost of their parameters. */
 float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* Whether two bodies may be one: they moved apart in no keyframe, or less than tells a joint. */
+/* Whether two bodies may be one: their relative motion is in no keyframe significant, or is below
+ * the joint detection threshold. */
 bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* Whether two bodies did not move apart, as far as more than noise tells. */
+/* Whether two bodies show no relative motion beyond noise. */
 bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* Whether two bodies moved apart so little that where they part is in doubt. */
+/* Whether two bodies moved so little relative to each other that their boundary is in doubt. */
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* bodies.c: a new body without features, the last in the list; there must be room. */
@@ -220,7 +223,7 @@ void grrl_bodies_update(struct grrl_perception *p);
 /* How well a joint type explains the relative motion of two bodies. */
 struct grrl_joint_fit {
     float excess; /* chi squared beyond its expectation */
-    bool excited; /* the motion is large enough to tell */
+    bool excited; /* the motion is large enough to decide */
     float lower;  /* excursion from the first keyframe, rad or m */
     float upper;
     struct grrl_vec2 in_a; /* the pivot, or a point on the axis, in the frame of a */
@@ -232,46 +235,49 @@ struct grrl_joint_fit {
 
 /* The evidence for a joint between bodies a < b. */
 struct grrl_joint_evidence {
-    float weight; /* chi squared better than free */
-    float order;  /* better than what untied motion explains as well, less for distance */
-    float odds;   /* chi squared better than the other type */
+    float weight; /* gain over free motion in chi squared */
+    float order;  /* gain over independent motion in chi squared, less a cost for distance */
+    float odds;   /* gain over the other type in chi squared */
     float p[3];   /* probabilities: revolute, prismatic, free */
     uint8_t a;
     uint8_t b;
     uint8_t type;
-    bool told;     /* by the motion; the place of the joint may still speak against it */
-    uint8_t doubt; /* enum grrl_reason: why it is none */
+    bool told;     /* the motion supports it; the place of the joint may still rule it out */
+    uint8_t doubt; /* enum grrl_reason: why it is not a joint */
     struct grrl_joint_fit fit;
 };
 
-/* joints.c: weighs the evidence for a joint between a and b; false: none is supported. */
+/* joints.c: weighs the evidence for a joint between a and b; false: no joint is supported. */
 bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
                        struct grrl_joint_evidence *evidence);
 
 /* joint_place.c: half the extent of a body's features. */
 float grrl_joint_half_extent(const struct grrl_perception *p, uint8_t body);
 
-/* Whether two bodies lie as near to their joint as joined ones do: farther where untied motion is
- * worse by much, `support` in chi squared. Sliding ones lie side by side at both ends. */
+/* Whether two bodies lie near enough to their joint. The limit grows if the joint beats independent
+ * motion by a wide margin (`support`, in chi squared). Sliding bodies must lie side by side at both
+ * ends. */
 bool grrl_joint_is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                         float support);
 
-/* What the place of a pivot says for it before a camera: less with its distance from a body. */
+/* Evidence for a pivot from its place, as seen by a camera; it falls with the distance from a body.
+ */
 float grrl_joint_place_evidence(const struct grrl_perception *p,
                                 const struct grrl_joint_evidence *e);
 
-/* Of two joints equally well supported the one nearer to its bodies is the likelier. */
+/* Cost of a joint's distance: of two joints equally well supported, the one nearer to its bodies is
+ * more likely. */
 float grrl_joint_distance_cost(const struct grrl_perception *p,
                                const struct grrl_joint_evidence *e);
 
-/* joint_pictures.c: what speaks for a slide, in chi squared, before a camera that may move. */
+/* joint_pictures.c: evidence for a slide, in chi squared, as seen by a camera that may move. */
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
                                    const struct grrl_joint_evidence *e);
 
-/* structure.c: whether a third body turns against both of two about one pivot. */
+/* structure.c: whether a third body turns relative to both bodies about the same pivot. */
 bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* Fills the model from the bodies and what ties them together. */
+/* Fills the model from the bodies and the joints between them. */
 void grrl_structure_update(struct grrl_perception *p);
 
 #endif

@@ -1,10 +1,10 @@
 /*
  * rest_error.c: position error at rest that averaging does not remove.
  *
- * A tracker in pictures drifts, and holds on to corners that are none: at rest a point is in one
- * place for sixty frames, and after the next push in another though nothing moved it. The table
- * tells: what is sparse at first sight hardly ever moves. The model error grows to what its points
- * are found to be off, so that drift is not taken for motion, however many pushes follow.
+ * An image tracker drifts, and latches on to corners that are not real: a point at rest keeps one
+ * place for sixty frames, and after the next push is in another though nothing moved it. The table
+ * reveals this: features that are sparse initially hardly ever move. The model error is raised to
+ * the error measured on them, so that drift is not mistaken for motion, however many pushes follow.
  */
 #include "perception/perception_internal.h"
 
@@ -12,20 +12,20 @@
  * 2 ln 2. */
 #define MEDIAN 1.386f
 
-/* The median of n squared displacements scatters by 1.7 / sqrt(n) of itself, and what it exceeds
- * noise by must be this many times as much. */
+/* The median of n squared displacements has a relative standard deviation of 1.7 / sqrt(n); its
+ * excess over noise must be this many times as much. */
 #define CHANCE 1.7f
 #define CHANCE_SIGMAS 5.0f
 
-/* Pairs of rests, and points of the table in either, needed. */
+/* Minimum number of pairs of rests, and of table points in each pair. */
 enum { LEAST_PAIRS = 3, LEAST_FEATURES = 12 };
 
-/* What is found counts from so many times the configured error on: less is chance. */
+/* The measured error counts if it is at least this many times the configured error. */
 #define SIGNIFICANT 1.5f
 
 static void sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n; i++) { /* insertion sort: the table, or rests */
+    for (uint16_t i = 1; i < n; i++) { /* insertion sort: table points, or rests */
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -36,11 +36,11 @@ static void sort(float *values, uint16_t n)
     }
 }
 
-/* What the table's points tell of two rests, variances per axis. */
+/* Comparison of the table's points between two rests; variances per axis. */
 struct rest_pair {
     uint16_t n;    /* points seen in both */
-    float noise;   /* of a point, the mean of both rests */
-    float surplus; /* beyond that, by chance below 0 */
+    float noise;   /* of a point, averaged over both rests */
+    float surplus; /* beyond that; may be below 0 by chance */
 };
 
 static struct rest_pair compare(const struct grrl_perception *p, uint8_t k0, uint8_t k1)
@@ -90,7 +90,7 @@ float grrl_rest_error(const struct grrl_perception *p)
     float found = surplus[n / 2];
     float chance = CHANCE_SIGMAS * CHANCE * (noise / points) / grrl_sqrt(points);
     float least = SIGNIFICANT * p->config.model_error_m;
-    float most = p->config.min_slide_m; /* beyond it nothing could be told */
+    float most = p->config.min_slide_m; /* beyond it no slide could be detected */
     if (!(found > chance && found > least * least))
         return 0.0f;
     return found < most * most ? grrl_sqrt(found) : most;

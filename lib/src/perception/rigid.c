@@ -3,25 +3,25 @@
  */
 #include "perception/perception_internal.h"
 
-/* A point of a keyframe this many standard deviations off its body is an outlier: noise reaches it
- * once in 270,000 points, see outliers.c. */
+/* A point this many standard deviations off its body in a keyframe is an outlier: noise reaches
+ * that once in 270,000 points, see outliers.c. */
 #define OFF_SIGMAS 5.0f
 
-/* Of a body's points in a keyframe one in this many may be outliers; more are no outliers, the body
- * is wrong. */
+/* One in this many points of a body in a keyframe may be outliers; if there are more, the body is
+ * wrong instead. */
 #define OFF_SHARE 3
 
-#define SEEN 1000u /* outweighs any number of frames averaged, 255 at most */
+#define SEEN 1000u /* outweighs any number of frames averaged, at most 255 */
 
-/* A camera nears things by a third while one looks, or zooms. What looks half as large as before is
- * no body. */
+/* Standard deviation of growth: a camera may approach or zoom by a third. A body never appears less
+ * than half as large as before. */
 #define GROWTH_SD 0.3f
 #define LEAST_GROWTH (-0.5f)
 
-/* Of a size in a keyframe: what noise makes of it is no change. */
+/* Standard deviations of a size in a keyframe within which a change may be noise. */
 #define SIZE_SIGMAS 3.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added so that nothing is divided by zero */
+#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
 
 float grrl_rigid_growth(const struct grrl_perception *p, float length, float inertia)
 {
@@ -104,7 +104,7 @@ float grrl_perception_size_change(const struct grrl_perception *perception, uint
     return most > least ? most - least : 0.0f;
 }
 
-/* The keyframe that saw most of these features, the earliest of equals. */
+/* The keyframe that saw most of these features; the earliest in case of a tie. */
 static uint8_t reference_keyframe(const struct grrl_perception *p, const uint16_t *slots,
                                   uint16_t n)
 {
@@ -155,13 +155,14 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
     return true;
 }
 
-/* Features whose place on the body is known, the others behind them. */
+/* Features whose place on the body is known come first, then the others. */
 struct known {
-    uint16_t n; /* known ones */
+    uint16_t n; /* number of known ones */
     uint16_t slot[GRRL_MAX_FEATURES];
 };
 
-/* The shape is what one keyframe saw, about its centroid; features that it did not see follow. */
+/* The initial shape is what one keyframe saw, relative to its centroid; features it did not see
+ * come later. */
 static void begin_shape(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                         struct grrl_vec2 *shape, struct known *known)
 {
@@ -188,7 +189,7 @@ static void begin_shape(const struct grrl_perception *p, const uint16_t *slots, 
     }
 }
 
-/* Places the features that the poses allow to place; whether any was new. */
+/* Places the features that were seen with a known pose; returns whether there were any. */
 static bool place_unknown(const struct grrl_perception *p, uint16_t n, struct grrl_vec2 *shape,
                           const struct grrl_perception_pose *poses, size_t stride,
                           struct known *known)
@@ -205,8 +206,8 @@ static bool place_unknown(const struct grrl_perception *p, uint16_t n, struct gr
 }
 
 /*
- * A body outlives its features: poses from those that are known place others that were seen with
- * them, and these give poses to keyframes that saw none of the first.
+ * A body outlives its features: the known features give poses, these place other features seen at
+ * the same time, and those give poses in keyframes that saw none of the first.
  */
 static void spread_shape(const struct grrl_perception *p, uint16_t n, struct grrl_vec2 *shape,
                          struct grrl_perception_pose *poses, size_t stride, struct known *known)
@@ -217,7 +218,8 @@ static void spread_shape(const struct grrl_perception *p, uint16_t n, struct grr
                 fit_pose(p, k, known->slot, known->n, shape, &poses[k * stride]);
 }
 
-/* Generalised Procrustes analysis (Gower 1975): poses for a shape, the shape for poses, twice. */
+/* Generalised Procrustes analysis (Gower 1975): poses for a shape, then the shape for the poses,
+ * twice. */
 void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                     struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride)
 {
@@ -239,14 +241,15 @@ void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint
         fit_pose(p, k, fitted, known.n, shape, &poses[k * stride]);
 }
 
-/* Farther off its body than noise, and a joint too small to be told, explain. */
+/* Whether a point is farther off its body than noise, or a joint too small to detect, can explain.
+ */
 static bool is_off(const struct grrl_perception *p, uint8_t weight, float d2)
 {
     float least = p->config.min_slide_m * p->config.min_slide_m;
     return d2 > least && d2 > OFF_SIGMAS * OFF_SIGMAS * grrl_perception_variance(p, weight);
 }
 
-/* The place in slots of the point farthest off its body in keyframe k, n: none is off. */
+/* The index in `slots` of the point farthest off its body in keyframe k; n: none is off. */
 static uint16_t farthest_off(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
                              uint16_t n, const struct grrl_vec2 *shape,
                              const struct grrl_perception_pose *pose)

@@ -1,37 +1,39 @@
 /*
- * structure.c: chooses the joints of all bodies and fills the model.
+ * structure.c: chooses the joints between all bodies and fills the model.
  *
- * Joints come from a maximum spanning forest over the evidence; a joint that closes a loop of four
- * links or more needs more of it (a triangle of joints could not move).
+ * The joints form a maximum spanning forest over the evidence; a joint that closes a loop of at
+ * least four links needs more evidence (a triangle of joints could not move).
  */
 #include "perception/perception_internal.h"
 
-/* Taken off the order of a slide that turning explains. The order of a joint is WELL_SUPPORTED (6,
- * joints.c) at most, so that such a slide comes after all that are supported and near. */
+/* Subtracted from the order of a slide that a parallelogram explains. The order of a joint is at
+ * most WELL_SUPPORTED (6, joints.c), so such a slide comes after all well supported, near joints.
+ */
 #define PARALLELOGRAM_COST 20.0f
 
-/* A slide below this many times min_slide_m (9 mm) may be what bent bodies look like. Half a
+/* A slide below this many times min_slide_m (9 mm) may be an artefact of bent bodies. Half a
  * parallelogram whose joints turned less than min_turn_rad seems to slide by min_turn_rad times the
- * length of a link, some 5 mm; twice that is on the safe side. */
+ * length of a link, about 5 mm; twice that is safe. */
 #define SHORT_SLIDE 5.0f
 
-/* z-score of the joints that two bodies hide, summed over both. Noise alone sums to less in nearly
- * all pairs. On a 4R loop at twice the noise wrong states fell from 4.1 to 0.3% (seed 47000). */
+/* z-score of undetected joints in two bodies, summed over both. Noise alone sums to less in nearly
+ * all pairs. On a 4R loop at twice the noise this lowered wrong states from 4.1 to 0.3% (seed
+ * 47000). */
 #define HIDDEN_SIGMAS 3.5f
 
-/* The usual level of confidence: below it two bodies are undetermined, not disconnected. */
+/* The usual confidence level: below it two bodies are undetermined, not disconnected. */
 #define SURE_DISCONNECTED 0.95f
 
-/* Chi squared by which a joint that closes a loop is better than free: five times TYPE_MARGIN of
- * joints.c, for a loop is rare a priori and the forest explains the motion without it. It must stay
- * well below FREE_COST_MAX (140), the most that a joint can be better. */
+/* Chi squared by which a joint that closes a loop must beat free motion: five times TYPE_MARGIN of
+ * joints.c, since a loop is rare a priori and the forest explains the motion without it. It must
+ * stay well below FREE_COST_MAX (140), the largest possible gain. */
 #define LOOP_COST 40.0f
 
-/* Pivots this near, in units of gap_m (20 mm), are one pin: the width of a link and the error of a
- * pivot that turned just enough to be told. */
+/* Pivots closer than this, in units of gap_m (20 mm), are one pin: the width of a link and the
+ * error of a pivot that turned just enough to be detected. */
 #define PIN_REACH 0.2f
 
-/* The number of links on the shortest way from a to b over the joints so far, 0: not connected. */
+/* The number of links on the shortest path from a to b over the joints so far; 0: not connected. */
 static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
 {
     uint32_t reached = UINT32_C(1) << a;
@@ -78,8 +80,8 @@ bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint
     return false;
 }
 
-/* Several links on one pin are joined by one joint fewer than they are: a further joint at the
- * pivot of one already taken closes no loop. */
+/* n links on one pin are connected by n - 1 joints: a further joint at the pivot of an accepted one
+ * closes no loop. */
 static bool shares_a_pin(const struct grrl_joint_evidence *taken, uint8_t n,
                          const struct grrl_joint_evidence *e, float reach)
 {
@@ -101,9 +103,9 @@ static const struct grrl_joint_evidence *find_revolute(const struct grrl_joint_e
 }
 
 /*
- * Whether two pivots on a third body explain that these two slide past each other without a turn,
- * as opposite links of a parallelogram do: the third turns against either, and its turn times the
- * distance of its pivots is as much as they slid.
+ * Whether two pivots on a third body explain why these two slide past each other without turning,
+ * like opposite links of a parallelogram: the third body turns relative to both, and its turn times
+ * the distance of its pivots accounts for the slide.
  */
 static bool is_parallelogram(const struct grrl_perception *p, const struct grrl_joint_evidence *all,
                              uint16_t n, const struct grrl_joint_evidence *slide)
@@ -124,8 +126,9 @@ static bool is_parallelogram(const struct grrl_perception *p, const struct grrl_
 }
 
 /*
- * Joints that turned too little to be told bend the bodies they are in, and bent bodies seem to
- * slide: half a parallelogram past the other half. A short slide needs straight bodies.
+ * Joints that turned too little to be detected bend the bodies they are in, and bent bodies seem to
+ * slide: half a parallelogram past the other half. So a short slide counts only between straight
+ * bodies.
  */
 static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
                                     const struct grrl_joint_evidence *e)
@@ -135,8 +138,8 @@ static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
            grrl_cut_hidden_joint(p, e->a) + grrl_cut_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
 }
 
-/* Puts the accepted evidence in front, best first (Kruskal's maximum spanning forest, then loops);
- * returns how many. */
+/* Moves the accepted evidence to the front, best first (Kruskal's maximum spanning forest, then
+ * loops); returns how many. */
 static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joint_evidence *e,
                                 uint16_t n)
 {
@@ -170,7 +173,7 @@ static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joi
     return accepted;
 }
 
-/* The last keyframe that saw a body: later ones know nothing of its joints. */
+/* The last keyframe that saw a body: later ones say nothing about its joints. */
 static uint8_t last_seen(const struct grrl_perception *p, uint8_t body)
 {
     uint8_t k = (uint8_t)(p->n_keyframes - 1);
@@ -204,7 +207,7 @@ static void describe_joint(const struct grrl_perception *p, const struct grrl_jo
     };
 }
 
-/* Number of a body's features and their mean. */
+/* The number of a body's features and their mean. */
 static void describe_place(const struct grrl_perception *p, uint8_t body,
                            const struct grrl_model *model, struct grrl_body *out)
 {
@@ -240,8 +243,7 @@ static void describe_axis(const struct grrl_perception *p, uint8_t body,
     grrl_principal_axes(xx, xy, yy, &major, &minor, &out->axis);
 }
 
-/* How far the features reach along the axis and across: the centroid is among them, so that 0 is
- * within either range. */
+/* The extent of the features along the axis and across. Both ranges contain 0, the centroid. */
 static void describe_extent(const struct grrl_perception *p, uint8_t body,
                             const struct grrl_model *model, struct grrl_body *out)
 {
@@ -262,7 +264,7 @@ static void describe_extent(const struct grrl_perception *p, uint8_t body,
     out->width_m = across[1] - across[0];
 }
 
-/* A body of the model: bodies.c leaves none without a feature. */
+/* A body of the model. It has at least one feature: see bodies.c. */
 static void describe_body(const struct grrl_perception *p, uint8_t body,
                           const struct grrl_model *model, struct grrl_body *out)
 {
@@ -272,8 +274,8 @@ static void describe_body(const struct grrl_perception *p, uint8_t body,
     describe_extent(p, body, model, out);
 }
 
-/* Features where the last keyframe has their bodies; those of no body, or of one that it did not
- * see, where they were last seen. */
+/* Places features by the pose of their body in the last keyframe; those without a body, or whose
+ * body that keyframe did not see, where they were last seen. */
 static void describe_features(const struct grrl_perception *p, struct grrl_model *model)
 {
     const struct grrl_perception_pose *poses = p->pose[p->n_keyframes - 1];
@@ -287,7 +289,7 @@ static void describe_features(const struct grrl_perception *p, struct grrl_model
     }
 }
 
-/* Joints in order of discovery: those of the last model that still hold come first. */
+/* Joints in order of discovery: those of the last model that still exist come first. */
 static uint8_t order_of_discovery(const struct grrl_perception *p,
                                   const struct grrl_joint_evidence *e, uint8_t n, uint8_t *order)
 {
@@ -311,7 +313,7 @@ static uint8_t order_of_discovery(const struct grrl_perception *p,
     return count;
 }
 
-/* The joints that the motion of each pair supports; returns how many. */
+/* Collects the joints that the motion of each pair supports; returns how many. */
 static uint16_t weigh_all(const struct grrl_perception *p, struct grrl_joint_evidence *e)
 {
     uint16_t n = 0;

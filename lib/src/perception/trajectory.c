@@ -1,5 +1,5 @@
 /*
- * trajectory.c: one point's path, as a circle or a line.
+ * trajectory.c: fits a circle and a line to the path of one point.
  */
 #include "grrl/perception/trajectory.h"
 
@@ -10,43 +10,43 @@
 #include "grrl/base/geometry.h"
 #include "perception/trajectory_evidence.h"
 
-/* Coordinates beyond this are refused, and no radius is said to be larger: squares of both stay far
+/* Coordinates beyond this are refused, and radii are limited to it: the squares of both stay far
  * from the limits of a float. */
 #define FARTHEST_M 1000.0f
 
-/* Positions that scatter by less are one place: a float has no more digits of a metre. */
+/* Positions that scatter by less count as one place: a float resolves no finer part of a metre. */
 #define STILL_M 1e-6f
 
-/* A sample this far from the running median is an outlier: noise alone is some 4 times in 10^6.
- */
+/* A sample this far from the running median is an outlier: noise alone gets there about 4 times in
+ * 10^6. */
 #define OUTLIER_SIGMAS 5.0f
 
-/* Where a residual counts half (Cauchy's loss): noise is there once in 370 samples, so that a fit
- * loses little by it. */
+/* Residual with weight one half (Cauchy's loss): noise reaches it once in 370 samples, so the fit
+ * loses little efficiency. */
 #define CAUCHY_SIGMAS 3.0f
 
-/* The least of squared quantities under a root that are positive but for rounding, and of 1 + 4 a d
- * for a curve that exists. */
+/* Lower bounds for squared quantities under a root, which only rounding makes negative, and for 1 +
+ * 4 a d of a curve that exists. */
 #define LEAST_SQUARE 1e-6f
 #define LEAST_EXISTING 1e-3f
 
-/* Marquardt's (1963) damping: where it starts, and what it is multiplied by after a good step and a
- * bad one. A step that lowers the loss by a smaller share than CONVERGED is the last. */
+/* Marquardt's (1963) damping: the initial value, and the factors after a good and a bad step. A
+ * step that lowers the loss by a smaller share than CONVERGED is the last. */
 #define FIRST_DAMPING 1e-3f
 #define LESS_DAMPING 0.1f
 #define MORE_DAMPING 10.0f
 #define CONVERGED 1e-5f
 
-#define LEAST_PIVOT 1e-12f /* added to the diagonal, so that nothing is divided by zero */
+#define LEAST_PIVOT 1e-12f /* added to the diagonal to avoid division by zero */
 
 enum {
-    WINDOW = 2,     /* samples before and after in the running median: two outliers are outvoted */
-    MAX_STEPS = 25, /* of the fit; it converges in some ten */
-    MAX_DAMPINGS = 8, /* tried in a step: up to 10^8 times the first */
-    SWEEPS = 8        /* of Jacobi's method, which converges quadratically: four would do */
+    WINDOW = 2, /* samples before and after in the running median, which outvotes two outliers */
+    MAX_STEPS = 25,   /* of the fit; it converges in about ten */
+    MAX_DAMPINGS = 8, /* tried per step: up to 10^8 times the first */
+    SWEEPS = 8        /* of Jacobi's method, which converges quadratically: four would be enough */
 };
 
-/* A trajectory seen in its plane: u and v are its two main axes, w is across. */
+/* A trajectory in its plane: u and v are its two main axes, w is normal to them. */
 struct view {
     const struct grrl_trajectory *trajectory;
     float outlier_m;
@@ -58,9 +58,9 @@ struct view {
 };
 
 /*
- * A circle or a line: the points with a |p|^2 + e (p . n) + d = 0, where n = (cos, sin) of the
- * angle and e^2 = 1 + 4 a d. a is half the curvature, 0 for a line; then n is its normal and -d its
- * distance from the origin. Chernov and Lesort's parameters.
+ * A circle or a line in Chernov and Lesort's parameters: the points with a |p|^2 + e (p . n) + d =
+ * 0, where n = (cos, sin) of the angle and e^2 = 1 + 4 a d. a is half the curvature, 0 for a line;
+ * then n is its normal and -d its distance from the origin.
  */
 struct curve {
     float a;
@@ -68,7 +68,7 @@ struct curve {
     float angle;
 };
 
-/* Normal equations of a step, and the loss where they were set up. */
+/* The normal equations of a step, and the loss at the point where they were set up. */
 struct normal {
     float h[3][3];
     float g[3];
@@ -90,8 +90,8 @@ static float coordinate(const struct grrl_trajectory *t, uint32_t i, uint8_t axi
     return axis < t->dimensions ? t->rows_m[(size_t)i * t->dimensions + axis] : 0.0f;
 }
 
-/* The median of a sample and as many of its neighbours in time before as after, at most WINDOW;
- * along one axis. */
+/* The median along one axis of a sample and its neighbours in time, at most WINDOW on each side and
+ * equally many. */
 static float running_median(const struct grrl_trajectory *t, uint32_t i, uint8_t axis)
 {
     float sorted[2 * WINDOW + 1];
@@ -108,7 +108,7 @@ static float running_median(const struct grrl_trajectory *t, uint32_t i, uint8_t
     return sorted[reach];
 }
 
-/* Whether a sample stays with its neighbours. */
+/* Whether a sample is close to its neighbours. */
 static bool is_kept(const struct view *view, uint32_t i)
 {
     float sum = 0.0f;
@@ -140,7 +140,7 @@ static struct grrl_vec2 project(const struct view *view, uint32_t i)
 
 /* --- the plane -------------------------------------------------------------------------------- */
 
-/* One Jacobi rotation that makes m[p][q] zero; the columns of axes turn along. */
+/* One Jacobi rotation that makes m[p][q] zero, also applied to the columns of `axes`. */
 static void jacobi_rotate(float m[3][3], float axes[3][3], int p, int q)
 {
     if (m[p][q] == 0.0f)
@@ -168,7 +168,7 @@ static void jacobi_rotate(float m[3][3], float axes[3][3], int p, int q)
     }
 }
 
-/* Sets u, v and w from a covariance, most spread first, right-handed. */
+/* Sets u, v and w from a covariance, in order of decreasing spread, right-handed. */
 static void main_axes(float m[3][3], struct view *view)
 {
     float axes[3][3] = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
@@ -194,7 +194,7 @@ static void main_axes(float m[3][3], struct view *view)
     }
 }
 
-/* Moves the origin to the mean of the samples kept and counts them. */
+/* Moves the origin to the mean of the kept samples and counts them. */
 static uint32_t find_origin(struct view *view)
 {
     uint32_t n = 0;
@@ -215,7 +215,7 @@ static uint32_t find_origin(struct view *view)
     return n;
 }
 
-/* Origin and axes of the samples kept; false: they are all in one place, but for rounding. */
+/* Origin and axes of the kept samples; false: apart from rounding they are all in one place. */
 static bool find_plane(struct view *view, struct grrl_trajectory_fit *fit)
 {
     float spread[3][3] = {{0.0f}};
@@ -243,7 +243,8 @@ static bool find_plane(struct view *view, struct grrl_trajectory_fit *fit)
 
 /* --- fitting ---------------------------------------------------------------------------------- */
 
-/* The signed distance of a point from a curve and, unless NULL, its derivatives by a, d, angle. */
+/* The signed distance of a point from a curve and, unless NULL, its derivatives with respect to a,
+ * d and angle. */
 static float distance(const struct curve *curve, struct grrl_vec2 p, float *derivative)
 {
     float c = grrl_cos(curve->angle);
@@ -265,7 +266,7 @@ static float distance(const struct curve *curve, struct grrl_vec2 p, float *deri
     return result;
 }
 
-/* The loss at a curve; with `step` also the normal equations of a Gauss-Newton step. */
+/* The loss of a curve; with `step`, also the normal equations of a Gauss-Newton step. */
 static void evaluate(const struct view *view, const struct curve *curve, bool step,
                      struct normal *normal)
 {
@@ -315,7 +316,7 @@ static void solve_damped(const struct normal *normal, float damping, int first, 
     }
 }
 
-/* Levenberg and Marquardt's method from the curve given; a stays as it is unless `curved`. */
+/* Levenberg and Marquardt's method starting from the given curve; `a` is fixed unless `curved`. */
 static void refine(const struct view *view, bool curved, struct curve *curve, struct normal *normal)
 {
     float damping = FIRST_DAMPING;
@@ -345,7 +346,8 @@ static void refine(const struct view *view, bool curved, struct curve *curve, st
     }
 }
 
-/* Kasa's algebraic fit, linear and in one pass: where to start from on a long arc. False: none. */
+/* Kasa's algebraic fit, linear and in one pass: the starting point for a long arc. false: no
+ * circle. */
 static bool algebraic_circle(const struct view *view, struct curve *curve)
 {
     struct normal sums = {.loss = 0.0f};
@@ -397,7 +399,8 @@ static void describe_line(const struct view *view, const struct curve *line,
     model->travel = high - low;
 }
 
-/* The angle between the extremes; followed from sample to sample, so that it may exceed a turn. */
+/* The angle between the extremes, accumulated from sample to sample, so it may exceed a full turn.
+ */
 static float angle_travelled(const struct view *view, struct grrl_vec2 centre)
 {
     float angle = 0.0f;
@@ -434,7 +437,7 @@ static void describe_circle(const struct view *view, const struct curve *circle,
     fit->revolute.travel = angle_travelled(view, centre);
 }
 
-/* Of a curve, so that a few outliers left make no difference. */
+/* The residuals of a curve, clipped so that a few remaining outliers make no difference. */
 static struct grrl_trajectory_residuals residuals_of(const struct view *view, uint32_t n,
                                                      const struct curve *curve, float rms_m)
 {
@@ -463,7 +466,7 @@ static struct grrl_trajectory_residuals places_of(const struct view *view, uint3
 static void fit_models(const struct view *view, const struct grrl_trajectory_config *config,
                        struct grrl_trajectory_fit *fit)
 {
-    struct curve line = {.angle = 0.5f * GRRL_PI}; /* the main axis u, whose normal is v */
+    struct curve line = {.angle = 0.5f * GRRL_PI}; /* along the main axis u; v is its normal */
     struct normal line_normal;
     refine(view, false, &line, &line_normal);
     struct curve circle = line;

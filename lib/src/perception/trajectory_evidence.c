@@ -1,12 +1,13 @@
 /*
- * trajectory_evidence.c: the residuals of a trajectory, in slow waves and noise, and what they are
- * worth.
+ * trajectory_evidence.c: splits the residuals of a trajectory into slow waves and noise, and weighs
+ * the evidence.
  *
- * Residuals are added up with cosines of one half wave over the trajectory, of two, and so on: the
- * power of a wave is what their autocorrelation has at that frequency. Noise, whatever its
- * correlation in time, has as much in slow waves as in those a little faster, and that power over
- * all is one over the number of independent samples. What the slowest waves have beyond it are
- * errors of hand and mechanism, which no number of samples averages out, or a wrong model.
+ * Residuals are projected onto cosines with one half wave over the trajectory, two, and so on: the
+ * power of a wave is the part of their autocorrelation at that frequency. Noise, however correlated
+ * in time, has the same power in slow waves as in slightly faster ones, and the ratio of that power
+ * to the total is one over the number of independent samples. Any further power in the slowest
+ * waves comes from errors of the hand and the mechanism, which no number of samples averages out,
+ * or from a wrong model.
  */
 #include "perception/trajectory_evidence.h"
 
@@ -14,36 +15,37 @@
 
 #include "grrl/base/geometry.h"
 
-/* Waves are told apart from this number of samples on; with fewer all residuals count as slow. */
+/* Waves can be separated with at least this many samples; with fewer, all residuals count as slow.
+ */
 enum { LEAST_SAMPLES = 12 };
 
-/* An arc with a root mean square distance x from its chord turns by x over its length over this:
- * of a parabola 1 / (8 * 3 / 2 * sqrt(5)). */
+/* An arc of length l with a root mean square distance x from its chord turns by x / l divided by
+ * this: 1 / (8 * 3 / 2 * sqrt(5)) for a parabola. */
 #define BOW_PER_TURN 0.0372678f
 
-/* Before anything is seen. */
+/* Prior probabilities. */
 #define PRIOR_RIGID 0.1f
-#define PRIOR_NEITHER 0.1f /* of what moves; the two joints are alike */
+#define PRIOR_NEITHER 0.1f /* given that it moves; the two joints are equally likely */
 
-/* Standard deviation of the logarithm of a hinge's distance: a factor of three, as handles of
- * scissors and of garage doors are. */
+/* Standard deviation of the logarithm of a handle's distance from its hinge: a factor of three,
+ * from scissors to garage doors. */
 #define RADIUS_SPREAD 1.2f
 
-/* A handle that does not move wanders by this, root mean square; one that moves goes some 0.3 m,
+/* A handle at rest drifts by this much (root mean square); one that moves travels about 0.3 m,
  * within a factor of three. */
 #define WANDER_M 0.0003f
 #define MOTION_M 0.09f
 #define MOTION_SPREAD 1.2f
 
-/* Slow residuals over the length, root mean square: of mechanisms, and of paths that are neither a
- * line nor a circle, within a factor of two. */
+/* Slow residuals divided by the length, root mean square: for mechanisms, and for paths that are
+ * neither a line nor a circle, the latter within a factor of two. */
 #define JOINT_SLOW 0.006f
 #define NEITHER_SLOW 0.03f
 #define NEITHER_SPREAD 0.7f
 
 #define ROOT_TWO_PI 2.5066283f
 
-enum { STEPS = 32 }; /* of the integral over the turn, to either side */
+enum { STEPS = 32 }; /* of the integral over the turn, on each side */
 #define STEP_SIGMAS 0.25f
 
 void grrl_trajectory_spectrum_begin(struct grrl_trajectory_spectrum *spectrum, uint32_t n)
@@ -90,11 +92,11 @@ grrl_trajectory_spectrum_end(const struct grrl_trajectory_spectrum *spectrum)
     result.slow -= (float)slow_n * result.wave;
     result.slow = result.slow > 0.0f ? result.slow : 0.0f;
     float white = result.total > result.slow ? (result.total - result.slow) / n : 0.0f;
-    result.wave = result.wave > white ? result.wave : white; /* samples count once at most */
+    result.wave = result.wave > white ? result.wave : white; /* a sample counts at most once */
     return result;
 }
 
-/* The density of Student's t with four degrees of freedom, and with eight, at x scales. */
+/* The density at x of Student's t with four degrees of freedom, and with eight. */
 static float student4(float x)
 {
     float square = 1.0f + 0.25f * x * x;
@@ -108,7 +110,8 @@ static float student8(float x)
     return 0.386699f / (fourth * grrl_sqrt(square));
 }
 
-/* The density of x, whose logarithm scatters by `spread` about that of the median. */
+/* The log-normal density at x: the logarithm has the standard deviation `spread` about that of the
+ * median. */
 static float log_normal(float x, float median, float spread)
 {
     if (!(x > 0.0f))
@@ -117,7 +120,7 @@ static float log_normal(float x, float median, float spread)
     return grrl_exp(-0.5f * z * z) / (x * spread * ROOT_TWO_PI);
 }
 
-/* How probable a turn as large as seen is if the handle turns by the length over the radius. */
+/* The density of the observed turn if the handle turns by the length over the radius. */
 static float density_of_circle(const struct grrl_trajectory_config *config,
                                const struct grrl_trajectory_clues *clues, float sigma_rad)
 {
@@ -128,13 +131,14 @@ static float density_of_circle(const struct grrl_trajectory_config *config,
         float turn = clues->turn_rad + sigma_rad * at;
         float weight = student4(at);
         weights += weight;
-        turn = turn < 0.0f ? -turn : turn; /* to either side alike */
+        turn = turn < 0.0f ? -turn : turn; /* symmetric */
         sum += 0.5f * weight * log_normal(turn, clues->length_m / config->radius_m, RADIUS_SPREAD);
     }
     return sum / weights;
 }
 
-/* The probability of a hypothesis with this prior, by the densities under it and otherwise. */
+/* The posterior probability of a hypothesis, from its prior and the densities under it and
+ * otherwise. */
 static float share_of(float prior, float density, float otherwise)
 {
     float both = prior * density + (1.0f - prior) * otherwise;

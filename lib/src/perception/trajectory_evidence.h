@@ -1,8 +1,8 @@
 /*
- * trajectory_evidence.h: what the residuals of a trajectory tell about its joint.
+ * trajectory_evidence.h: evidence about the joint from the residuals of a trajectory.
  *
- * Order of calls: for the residuals of the circle, and for the places along the main axis, one
- * spectrum each: begin, add in the order of time, end. Then grrl_trajectory_weigh.
+ * Order of calls: one spectrum for the residuals of the circle and one for the positions along the
+ * main axis, each by begin, add in time order, end. Then grrl_trajectory_weigh.
  */
 #ifndef GRRL_TRAJECTORY_EVIDENCE_H
 #define GRRL_TRAJECTORY_EVIDENCE_H
@@ -11,23 +11,23 @@
 
 #include "grrl/perception/trajectory.h"
 
-/* Half waves over the trajectory: the slowest ones are errors of the hand and the mechanism, or of
- * the model; the same number twice more tells what noise has in each of them. */
+/* Half waves over the trajectory: the slowest are errors of the hand and the mechanism, or of the
+ * model; twice as many faster ones measure the noise power per wave. */
 enum { GRRL_TRAJECTORY_SLOW = 8, GRRL_TRAJECTORY_WAVES = 3 * GRRL_TRAJECTORY_SLOW };
 
 struct grrl_trajectory_spectrum {
     uint32_t n; /* samples that will be added */
     uint32_t i;
     float squares;
-    float wave[GRRL_TRAJECTORY_WAVES]; /* sums of products with one half wave, two, .. */
+    float wave[GRRL_TRAJECTORY_WAVES]; /* sums of products with one half wave, two, ... */
 };
 
 /* Mean squares, in m^2. */
 struct grrl_trajectory_residuals {
     float total;
-    float slow; /* what the slowest waves have beyond their share of the noise */
-    float
-        wave; /* noise in each wave: total over it, without slow ones, is how many samples count */
+    float slow; /* power of the slowest waves beyond their share of the noise */
+    float wave; /* noise power per wave: total / wave, without the slow part, is the effective
+                   number of samples */
 };
 
 struct grrl_trajectory_clues {

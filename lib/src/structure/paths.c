@@ -5,7 +5,7 @@
 #include "grrl/structure/signature.h"
 
 /* Shortest and longest chains counted, in joints, and the limit on the number of chains. */
-enum { SHORTEST = 4, LONGEST = 6, MOST_CHAINS = 4096, FULL = 7 };
+enum { SHORTEST = 4, LONGEST = 6, MAX_CHAINS = 4096, FULL = 7 };
 
 /* A chain of joints that starts at one link. */
 struct chain {
@@ -87,8 +87,7 @@ void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths)
         add_stars(paths, graph, start);
         for (next_chain(&chain); chain.joints > 0; next_chain(&chain)) {
             unsigned end = chain.joints;
-            if (++chains >
-                MOST_CHAINS) { /* so has any larger structure, which then saturates too */
+            if (++chains > MAX_CHAINS) { /* so has any larger structure, which then saturates too */
                 memset(paths, 0x77, GRRL_PATH_COUNTS * sizeof paths->word[0]);
                 memset(&paths->word[GRRL_PATH_COUNTS], 0xff,
                        (GRRL_PATH_WORDS - GRRL_PATH_COUNTS) * sizeof paths->word[0]);

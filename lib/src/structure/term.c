@@ -17,7 +17,7 @@ void grrl_term_store_init(struct grrl_term_store *store, struct grrl_term_node *
     store->high_water = 1;
     store->symbols[GRRL_PROPERTY_SMALL - 1][0] = 's';
     store->symbols[GRRL_PROPERTY_LARGE - 1][0] = 'l';
-    store->n_symbols = 2;
+    store->n_symbols = GRRL_BUILT_IN_ATOMS;
 }
 
 uint16_t grrl_term_mark(const struct grrl_term_store *store)

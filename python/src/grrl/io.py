@@ -168,13 +168,15 @@ _MOST_POINTS = 256
 _MOST_DATA = 1 << 24
 
 
-def _fingerprint() -> int:
-    """Of points_t, as lcm-gen computes it: of the names, types and dimensions of its members."""
-    members = (("utime", "int64_t", ""), ("session_id", "int64_t", ""), ("seq", "int64_t", ""),
-               ("trial_id", "int32_t", ""), ("ack_cmd_seq", "int32_t", ""),
-               ("agent_session_id", "int64_t", ""), ("mode", "int8_t", ""), ("phase", "int8_t", ""),
-               ("n_points", "int32_t", ""), ("id", "int32_t", "n_points"), ("x", "float", "n_points"),
-               ("y", "float", "n_points"))
+_POINTS_MEMBERS = (
+    ("utime", "int64_t", ""), ("session_id", "int64_t", ""), ("seq", "int64_t", ""),
+    ("trial_id", "int32_t", ""), ("ack_cmd_seq", "int32_t", ""), ("agent_session_id", "int64_t", ""),
+    ("mode", "int8_t", ""), ("phase", "int8_t", ""), ("n_points", "int32_t", ""),
+    ("id", "int32_t", "n_points"), ("x", "float", "n_points"), ("y", "float", "n_points"))
+
+
+def _fingerprint(members: tuple[tuple[str, str, str], ...] = _POINTS_MEMBERS) -> int:
+    """Of a message, as lcm-gen computes it: of the names, types and dimensions of its members."""
     value = 0x12345678
 
     def add(byte: int) -> None:
@@ -191,25 +193,25 @@ def _fingerprint() -> int:
         add_text(kind)
         add(1 if count else 0)  # dimensions
         if count:
-            add(1)  # their size is a variable
+            add(0 if count.isdigit() else 1)  # a number, or the name of a member
             add_text(count)
     return ((value << 1) & (2**64 - 1)) + (value >> 63) & (2**64 - 1)
 
 
 def _events(data: bytes) -> Any:
-    """Channel and bytes of each whole event; None where some are damaged."""
+    """Channel, bytes and time (us) of each whole event; None where some are damaged."""
     at = 0
     while at < len(data):
         whole = len(data) - at >= _EVENT.size
         if whole:
-            sync, _, _, n_channel, n_data = _EVENT.unpack_from(data, at)
+            sync, _, time, n_channel, n_data = _EVENT.unpack_from(data, at)
             begin = at + _EVENT.size
             end = begin + n_channel + n_data
             next_sync = data[end:end + 4]
             whole = (sync == _SYNC and 0 < n_channel < 1000 and n_data <= _MOST_DATA
                      and end <= len(data) and next_sync == _SYNC[:len(next_sync)])
         if whole:
-            yield data[begin:begin + n_channel], data[begin + n_channel:end]
+            yield data[begin:begin + n_channel], data[begin + n_channel:end], time
             at = end
         else:
             yield None

@@ -14,7 +14,7 @@ POLL_S = 0.005
 HINT_PERIOD_US = 5_000_000
 OUTCOMES = {1: "discovered", 2: "capped", 3: "aborted"}
 EPILOG = """Without --lcm-url the environment variable LCM_DEFAULT_URL counts.
-Exit status: 0 all trials done or stopped by a signal; 1 trouble; 2 wrong command line.
+Exit status: 0 all trials done or stopped by a signal; 1 failed; 2 wrong command line.
 """
 
 

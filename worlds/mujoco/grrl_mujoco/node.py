@@ -61,7 +61,7 @@ class Node:
 
     @property
     def finished(self):
-        return self.stage == DONE
+        return self.phase == DONE
 
     @property
     def agent_is_blind(self):
@@ -105,7 +105,7 @@ class Node:
                 return False
             self.on_note("the agent was restarted, its trial is aborted")
             self.agent_revision = 0
-            if self.stage in FRAMES_FLOW:
+            if self.phase in FRAMES_FLOW:
                 self._end_trial(grrl.trial_t.ABORTED)
         self.agent_session_id = session_id
         self.agent_heard_us = now
@@ -130,7 +130,7 @@ class Node:
         self.pushes = self.rest_frames = self.looks = self.ack_cmd_seq = 0
         self.status = grrl.push_status_t()
         self.world = World(self.template, [self.seed, self.trial_id], self.noise_m)
-        self.stage = OFFER
+        self.phase = OFFER
         self.trial.judged_cmd_seq = -1
         self._announce(grrl.trial_t.RUNNING, grrl.trial_t.NONE)
 
@@ -142,7 +142,7 @@ class Node:
         self._publish_trial()
 
     def _end_trial(self, outcome):
-        self.stage = ENDED
+        self.phase = ENDED
         if outcome != grrl.trial_t.ABORTED:
             self.counted_trials += 1
         self._announce(grrl.trial_t.ENDED, outcome)
@@ -150,7 +150,7 @@ class Node:
 
     def _judge(self, model):
         """A model counts once for each push: the newest, with the scene at rest."""
-        if (self.stage != DECIDING or model.cmd_seq != self.ack_cmd_seq
+        if (self.phase != DECIDING or model.cmd_seq != self.ack_cmd_seq
                 or self.trial.judged_cmd_seq == self.ack_cmd_seq):
             return
         self.trial.judged_cmd_seq = self.ack_cmd_seq
@@ -170,26 +170,26 @@ class Node:
         if command.trial_revision != self.trial.revision:
             return
         self.agent_revision = command.trial_revision
-        if self.stage == OFFER:
-            self.stage = RESTING
+        if self.phase == OFFER:
+            self.phase = RESTING
             self.frame_due_us = self.now_us()
             self._advance()
-        elif self.stage == ENDED:
+        elif self.phase == ENDED:
             if self.counted_trials < self.trials:
                 self._begin_trial()
             else:
-                self.stage = FINISHING
+                self.phase = FINISHING
                 self.finishing_us = self.now_us()
                 self._announce(grrl.trial_t.FINISHED, grrl.trial_t.NONE)
-        elif self.stage == FINISHING:
-            self.stage = DONE
+        elif self.phase == FINISHING:
+            self.phase = DONE
         elif command.trial_id == self.trial_id and (
                 self.real_time or command.points_seq == self.seq):
             self._continue(command)
 
     def _continue(self, command):
         judged = self.trial.judged_cmd_seq == self.ack_cmd_seq
-        if self.stage != DECIDING:
+        if self.phase != DECIDING:
             self._advance()
         elif command.kind == grrl.push_command_t.PUSH:
             if judged and command.cmd_seq == self.ack_cmd_seq + 1:
@@ -197,7 +197,7 @@ class Node:
         elif judged and not self.real_time:
             self.looks += 1  # it sees nothing to push; perhaps it does in further frames
             if not self.agent_is_blind:
-                self.stage = RESTING
+                self.phase = RESTING
                 self.rest_frames = 0
                 self._advance()
 
@@ -207,11 +207,11 @@ class Node:
         self.looks = self.rest_frames = 0
         problem = self.world.begin_push(command)
         if problem:  # it counts as a push without effect: the agent sees that nothing moved
-            self.stage = RESTING
+            self.phase = RESTING
             self._set_push_state(grrl.push_status_t.REFUSED, grrl.push_status_t.BAD_COMMAND)
             self.on_note(f"push refused: {problem}")
         else:
-            self.stage = PUSHING
+            self.phase = PUSHING
             self._set_push_state(grrl.push_status_t.MOVING, grrl.push_status_t.NONE)
         self._advance()
 
@@ -226,25 +226,25 @@ class Node:
 
     def _advance(self):
         """In lock-step the next frame is due as soon as the last one was answered."""
-        if not self.real_time and self.stage in FRAMES_FLOW:
+        if not self.real_time and self.phase in FRAMES_FLOW:
             self._send_frame()
 
     def _move_on(self):
         """Lets the world go on for a frame; the phase to tell."""
-        if self.stage == PUSHING:
+        if self.phase == PUSHING:
             if not self.world.step_frame():
-                self.stage = RESTING
+                self.phase = RESTING
                 self.rest_frames = 0
                 self._set_push_state(grrl.push_status_t.DONE, self.world.reason)
             return grrl.points_t.PUSHING
         self.rest_frames += 1
         if self.rest_frames < REST_FRAMES_TO_SETTLE:
             return grrl.points_t.REST
-        if self.stage != DECIDING:
+        if self.phase != DECIDING:
             self.settled_us = self.now_us()
             if self.on_rest:
                 self.on_rest(self.trial_id, self.pushes, self.world)
-        self.stage = DECIDING
+        self.phase = DECIDING
         return grrl.points_t.SETTLED
 
     def _send_frame(self):
@@ -288,10 +288,10 @@ class Node:
     def tick(self):
         """Sends what is due by the clock: frames in real time, repetitions."""
         now = self.now_us()
-        if self.stage == DONE:
+        if self.phase == DONE:
             return
-        if self.stage == FINISHING and now - self.finishing_us >= FINISH_PATIENCE_US:
-            self.stage = DONE
+        if self.phase == FINISHING and now - self.finishing_us >= FINISH_PATIENCE_US:
+            self.phase = DONE
         elif self._waits_for_a_model(now):
             self.unjudged += 1
             self.on_note("no model comes that can be judged, the trial is aborted")
@@ -300,12 +300,12 @@ class Node:
             self._tick_real_time(now)
         elif now - self.sent_us >= REPEAT_US:
             self._publish_trial()
-            if self.stage in FRAMES_FLOW:
+            if self.phase in FRAMES_FLOW:
                 self._publish_points()
 
     def _waits_for_a_model(self, now):
         """Too long, from an agent that is there."""
-        return (self.stage == DECIDING and self.trial.judged_cmd_seq != self.ack_cmd_seq
+        return (self.phase == DECIDING and self.trial.judged_cmd_seq != self.ack_cmd_seq
                 and now - self.settled_us >= MODEL_PATIENCE_US
                 and now - self.agent_heard_us < SILENCE_US)
 
@@ -314,7 +314,7 @@ class Node:
             self._publish_trial()
         if now - self.status_us >= STATUS_PERIOD_US:
             self._publish_push_status()
-        if self.stage not in FRAMES_FLOW or now < self.frame_due_us:
+        if self.phase not in FRAMES_FLOW or now < self.frame_due_us:
             return
         self._send_frame()
         self.frame_due_us += FRAME_PERIOD_US

@@ -1,6 +1,9 @@
 /*
  * config.h: the library's capacities, fixed at compile time. All are plain numbers.
  *
+ * A profile sets them all: -DGRRL_PROFILE=tiny, small, default or large. Each may also be set by
+ * itself, which comes before the profile. docs/firmware.md says what a profile takes.
+ *
  * A CMake build takes them from its cache (cmake -DGRRL_MAX_LINKS=32) and writes them to
  * grrl_capacities.h. Code compiled against that build, in its tree or installed, gets the same
  * numbers, and an #error if it defines a different one with -D. Without CMake that file does not
@@ -19,9 +22,32 @@
 #endif
 #endif
 
+#if !defined(GRRL_PROFILE)
+#define GRRL_PROFILE default
+#endif
+#define GRRL_PROFILE_IS_tiny 1
+#define GRRL_PROFILE_IS_small 1
+#define GRRL_PROFILE_IS_default 1
+#define GRRL_PROFILE_IS_large 1
+#define GRRL_PROFILE_PASTE(start, profile) start##profile
+#define GRRL_PROFILE_EXPAND(start, profile) GRRL_PROFILE_PASTE(start, profile)
+#if GRRL_PROFILE_EXPAND(GRRL_PROFILE_IS_, GRRL_PROFILE) != 1
+#error "GRRL_PROFILE must be tiny, small, default or large, without quotes"
+#undef GRRL_PROFILE
+#define GRRL_PROFILE default /* so that no other error follows */
+#endif
+
+/* A capacity of each profile, in this order: tiny, small, default, large. */
+#define GRRL_PROFILED(tiny, small, normal, large)                                                  \
+    GRRL_PROFILE_EXPAND(GRRL_PROFILED_, GRRL_PROFILE)(tiny, small, normal, large)
+#define GRRL_PROFILED_tiny(tiny, small, normal, large) tiny
+#define GRRL_PROFILED_small(tiny, small, normal, large) small
+#define GRRL_PROFILED_default(tiny, small, normal, large) normal
+#define GRRL_PROFILED_large(tiny, small, normal, large) large
+
 /* Links in one structure, counting all objects on the table: 2 to 32. */
 #ifndef GRRL_MAX_LINKS
-#define GRRL_MAX_LINKS 16
+#define GRRL_MAX_LINKS GRRL_PROFILED(6, 10, 16, 32)
 #endif
 
 /* Joints in one structure. A tree has one fewer than links; each loop adds one. */
@@ -31,12 +57,12 @@
 
 /* Feature points tracked at once. */
 #ifndef GRRL_MAX_FEATURES
-#define GRRL_MAX_FEATURES 192
+#define GRRL_MAX_FEATURES GRRL_PROFILED(32, 96, 192, 384)
 #endif
 
 /* Keyframes that perception keeps for one trial. */
 #ifndef GRRL_MAX_KEYFRAMES
-#define GRRL_MAX_KEYFRAMES 48
+#define GRRL_MAX_KEYFRAMES GRRL_PROFILED(12, 16, 48, 96)
 #endif
 
 /* Properties of one link, 1 to 8. A graph packs them into the bytes of a 64-bit label. */
@@ -59,13 +85,13 @@
 
 /* Most states that one recall may search for sub-structures; five bytes of stack each. */
 #ifndef GRRL_RECALL_STATES
-#define GRRL_RECALL_STATES 512
+#define GRRL_RECALL_STATES GRRL_PROFILED(64, 256, 512, 512)
 #endif
 
 /* Search steps that one recall may spend on sub-structures, over all states: a few milliseconds on
  * a PC. When they run out, the most distant states go unsearched. */
 #ifndef GRRL_RECALL_STEPS
-#define GRRL_RECALL_STEPS 500000
+#define GRRL_RECALL_STEPS GRRL_PROFILED(20000, 20000, 500000, 500000)
 #endif
 
 /* Cells of an index. States with the same number of links and of joints of each type

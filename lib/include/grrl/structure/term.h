@@ -75,8 +75,8 @@ struct grrl_name {
 /* A property: 0 is none, 1 .. 127 an atom of the store, 128 + n the variable vn (n <= 127). */
 typedef uint8_t grrl_property;
 
-/* The atoms that every store knows from the start. */
-enum { GRRL_PROPERTY_SMALL = 1, GRRL_PROPERTY_LARGE = 2 };
+/* The atoms that every store knows from the start, and how many there are. */
+enum { GRRL_PROPERTY_SMALL = 1, GRRL_PROPERTY_LARGE, GRRL_BUILT_IN_ATOMS = GRRL_PROPERTY_LARGE };
 
 /* The six directions of the paper, measured from the link's principal axis. */
 enum { GRRL_DIRECTIONS = 6 };

@@ -77,7 +77,7 @@ static enum grrl_status read_header(const struct grrl_case_base *base, struct gr
 }
 
 /* Written so that NaN is never in range. */
-static bool is_within_most(float x)
+static bool is_within_max(float x)
 {
     return x >= -GRRL_MAX_REWARD && x <= GRRL_MAX_REWARD;
 }
@@ -87,7 +87,7 @@ static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odd
     if (grrl_record_read(record, LOG_ODDS_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
     *log_odds = grrl_record_take_float(record);
-    bool fine = grrl_record_check(record, LOG_ODDS_BYTES) == GRRL_OK && is_within_most(*log_odds);
+    bool fine = grrl_record_check(record, LOG_ODDS_BYTES) == GRRL_OK && is_within_max(*log_odds);
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
@@ -127,16 +127,16 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
     met.value_new = grrl_record_take_float(record);
     bool fine = grrl_record_check(record, CASE_BYTES) == GRRL_OK && is_key(met.key) &&
                 met.n_all > 0 && met.n_all <= GRRL_CASE_REWARDS && met.n_found <= met.n_all &&
-                met.used_at <= clock && is_within_most(met.value_all) &&
-                is_within_most(met.value) && is_within_most(met.value_new) && is_new(base, &met);
+                met.used_at <= clock && is_within_max(met.value_all) && is_within_max(met.value) &&
+                is_within_max(met.value_new) && is_new(base, &met);
     if (!fine)
         return GRRL_ERR_CORRUPT;
     base->cases[base->n++] = met;
     return GRRL_OK;
 }
 
-enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base, const struct grrl_io *io,
-                                      uint32_t *lost)
+enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_io *io,
+                                 uint32_t *lost)
 {
     struct grrl_record record = {.io = io};
     uint32_t n = 0;
@@ -157,14 +157,5 @@ enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base, const struct 
     base->high_water = base->n;
     base->clock = clock;
     base->log_odds = log_odds;
-    return status;
-}
-
-enum grrl_status grrl_cases_load(struct grrl_case_base *base, const struct grrl_io *io)
-{
-    uint32_t lost;
-    enum grrl_status status = grrl_cases_load_torn(base, io, &lost);
-    if (status == GRRL_ERR_IO)
-        grrl_cases_clear(base);
     return status;
 }

@@ -192,7 +192,7 @@ enum grrl_status grrl_learn_save(const void *self, const struct grrl_io *io)
 
 enum grrl_status grrl_learn_load(void *self, const struct grrl_io *io, uint32_t *lost)
 {
-    return grrl_cases_load_torn(&((struct grrl_learn_policy *)self)->cases, io, lost);
+    return grrl_cases_load(&((struct grrl_learn_policy *)self)->cases, io, lost);
 }
 
 GRRL_POLICY_TYPE grrl_policy_learn = {

@@ -208,8 +208,8 @@ static void drop_unused_states(struct grrl_experience_store *store)
             grrl_experience_remove_state(store, state);
 }
 
-enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
-                                           const struct grrl_io *io, uint32_t *lost)
+enum grrl_status grrl_experience_load(struct grrl_experience_store *store, const struct grrl_io *io,
+                                      uint32_t *lost)
 {
     struct header header = {0};
     grrl_experience_clear(store);
@@ -224,14 +224,5 @@ enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
         drop_unused_states(store);
     }
     store->clock = header.clock;
-    return status;
-}
-
-enum grrl_status grrl_experience_load(struct grrl_experience_store *store, const struct grrl_io *io)
-{
-    uint32_t lost;
-    enum grrl_status status = grrl_experience_load_torn(store, io, &lost);
-    if (status == GRRL_ERR_IO)
-        grrl_experience_clear(store);
     return status;
 }

@@ -279,7 +279,7 @@ static enum grrl_status save(const void *self, const struct grrl_io *io)
 
 static enum grrl_status load(void *self, const struct grrl_io *io, uint32_t *lost)
 {
-    return grrl_experience_load_torn(&((struct grrl_paper_policy *)self)->store, io, lost);
+    return grrl_experience_load(&((struct grrl_paper_policy *)self)->store, io, lost);
 }
 
 static const struct grrl_parameter parameters[] = {

@@ -127,9 +127,10 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
 GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
                                                const struct grrl_io *io);
 
-/* Replaces the cases. Statuses as for grrl_experience_load; after a failure the base is empty. */
+/* Replaces the cases. Statuses, *lost and what remains after a failure are as for
+ * grrl_experience_load. */
 GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
-                                               const struct grrl_io *io);
+                                               const struct grrl_io *io, uint32_t *lost);
 
 /*
  * Adds the cases of another base, so that two lives become one; which is added to which makes no
@@ -142,10 +143,6 @@ GRRL_MUST_USE enum grrl_status grrl_cases_merge(struct grrl_case_base *base,
                                                 struct grrl_case_base *from,
                                                 const struct grrl_case_config *config,
                                                 uint32_t most);
-
-/* Like grrl_experience_load_torn. */
-GRRL_MUST_USE enum grrl_status grrl_cases_load_torn(struct grrl_case_base *base,
-                                                    const struct grrl_io *io, uint32_t *lost);
 
 GRRL_API_END
 

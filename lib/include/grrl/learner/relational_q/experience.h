@@ -212,16 +212,12 @@ GRRL_MUST_USE enum grrl_status grrl_experience_save(const struct grrl_experience
  * are not read. GRRL_ERR_IO: also for a file that ends early. GRRL_ERR_FORMAT: another magic.
  * GRRL_ERR_VERSION: a newer version, other properties or directions, or more links than this build
  * has. GRRL_ERR_CORRUPT: a wrong CRC, or content that save never writes. GRRL_ERR_FULL: more
- * records than fit. After a failure the store is empty.
+ * records than fit. After a failure the store is empty, except after GRRL_ERR_IO: then it holds the
+ * experiences that were complete, and *lost is set to the number of further ones that the header
+ * announced. Otherwise *lost is 0.
  */
 GRRL_MUST_USE enum grrl_status grrl_experience_load(struct grrl_experience_store *store,
-                                                    const struct grrl_io *io);
-
-/* Like grrl_experience_load, but after GRRL_ERR_IO, and only then, the store holds the
- * experiences that were complete. *lost is set to the number of further experiences that the
- * header announced. */
-GRRL_MUST_USE enum grrl_status grrl_experience_load_torn(struct grrl_experience_store *store,
-                                                         const struct grrl_io *io, uint32_t *lost);
+                                                    const struct grrl_io *io, uint32_t *lost);
 
 GRRL_API_END
 

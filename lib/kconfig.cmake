@@ -1,0 +1,17 @@
+# What Kconfig chose, as the macros of grrl/base/config.h: GRRL_PROFILE, and each capacity that is not
+# left to the profile. For Zephyr and ESP-IDF; library and callers must both get them.
+# grrl_kconfig_definitions(RESULT)
+function(grrl_kconfig_definitions result)
+    foreach(profile tiny small default large)
+        string(TOUPPER ${profile} name)
+        if(CONFIG_GRRL_PROFILE_${name})
+            set(definitions GRRL_PROFILE=${profile})
+        endif()
+    endforeach()
+    foreach(name MAX_LINKS MAX_FEATURES MAX_KEYFRAMES)
+        if(CONFIG_GRRL_${name} GREATER 0)
+            list(APPEND definitions GRRL_${name}=${CONFIG_GRRL_${name}})
+        endif()
+    endforeach()
+    set(${result} ${definitions} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,61 @@
+# Debian packages by CPack: the shared library, what a developer needs, and the programs.
+# packaging/deb configures and builds for it.
+set(library_package libgrrl${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}) # as its SONAME
+set(contact $ENV{DEBEMAIL})
+if(contact STREQUAL "")
+    cmake_host_system_information(RESULT host QUERY FQDN)
+    set(contact $ENV{USER}@${host}) # as debchange has it
+endif()
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "the grrl authors <${contact}>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/packaging/compress.cmake)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_ALL library development tools)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SOURCE grrl)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY ">=")
+
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "links and joints of articulated objects from tracked points")
+set(paragraph "grrl finds the links and joints of articulated objects from how tracked\npoints move, and learns which pushes reveal them.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${library_package})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "${paragraph}\nThis package has the shared library.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/triggers)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libgrrl-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "${paragraph}\nThis package has the headers, and the files for CMake and pkg-config.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} (= ${PROJECT_VERSION}-1), libc6-dev")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME grrl-tools)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "${library_package} (= ${PROJECT_VERSION}-1)")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS liblcm-bin)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS gnuplot-nox)
+set(CPACK_DEBIAN_TOOLS_DESCRIPTION "${paragraph}\nThis package has the agent and the simulated world on LCM, and programs for\nrecordings, experiments and terms.")
+
+# What policy asks of each package: its changelogs and its licence.
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC) # SOURCE_DATE_EPOCH, where it is set
+configure_file(packaging/debian/changelog.in packaging/changelog.Debian @ONLY)
+configure_file(packaging/debian/copyright packaging/copyright COPYONLY)
+configure_file(CHANGELOG.md packaging/changelog COPYONLY)
+execute_process(COMMAND gzip -9nf changelog changelog.Debian
+    WORKING_DIRECTORY ${PROJECT_BINARY_DIR}/packaging COMMAND_ERROR_IS_FATAL ANY)
+foreach(pair library=${library_package} development=libgrrl-dev tools=grrl-tools)
+    string(REPLACE "=" ";" pair ${pair})
+    list(GET pair 0 component)
+    list(GET pair 1 package)
+    foreach(file copyright changelog.gz changelog.Debian.gz)
+        install(FILES ${PROJECT_BINARY_DIR}/packaging/${file}
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+    endforeach()
+endforeach()
+include(CPack)
