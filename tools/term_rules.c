@@ -115,7 +115,7 @@ static unsigned grow(const struct grrl_case_base *base, double least, struct rul
 
 static const struct {
     const char *name;
-    const char *value[MOST_VALUES];
+    const char *value[MOST_VALUES]; /* NULL beyond the largest, which no rule has */
 } words[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_DIRECTION] = {"A", {"0|180", "45|225", "90|270"}},
     [GRRL_CONTEXT_LENGTH] = {"length", {"tiny", "short", "long", "longer", "longest"}},
@@ -141,8 +141,9 @@ static bool print_part(const struct rule *rule, unsigned part, const char *befor
     fputs(before, stdout);
     printf(part == GRRL_CONTEXT_DIRECTION ? "%s(x, " : "%s(x) ", words[part].name);
     for (unsigned value = 0; value <= grrl_context_max[part]; value++) {
-        if ((rule->values[part] >> value & 1u) != 0) {
-            printf("%s%s", between, words[part].value[value]);
+        const char *word = words[part].value[value];
+        if ((rule->values[part] >> value & 1u) != 0 && word != NULL) {
+            printf("%s%s", between, word);
             between = "|";
         }
     }
