@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A tracker and a robot in front of a hinge, to begin your own from. docs/robot.md goes through it.
 
-    lcm-gen -p --ppath types lcmtypes/*.lcm
-    PYTHONPATH=types python3 examples/robot.py &
+    export PYTHONPATH=build/release/lcmtypes/python
+    python3 examples/robot.py &
     grrl-agent --explain --until-sure 0.95 --pushes 40
 
 The class Robot is all that speaks to grrl-agent; keep it. The class Hinge is what you replace: a
@@ -16,8 +16,8 @@ import signal
 import sys
 import time
 
-import grrl  # made by lcm-gen
 import lcm
+from grrl_lcmtypes import points_t, push_command_t, push_status_t, stop_t
 
 FRAMES_PER_S = 50
 WORKSPACE_M = (-0.5, -0.4, 0.5, 0.4)  # x0, y0, x1, y1: what the arm reaches and nobody stands in
@@ -36,7 +36,7 @@ class Robot:
         bus.subscribe("GRRL_PUSH_COMMAND", self.on_command).set_queue_capacity(0)
 
     def on_command(self, channel, data):
-        command = grrl.push_command_t.decode(data)
+        command = push_command_t.decode(data)
         if command.kind != command.PUSH or command.plant_session_id != self.session:
             return
         if command.cmd_seq <= self.obeyed.get(command.session_id, 0):
@@ -45,9 +45,9 @@ class Robot:
         if self.may(command):
             self.command = command
             self.plant.begin(command)
-            self.report(command, grrl.push_status_t.MOVING, grrl.push_status_t.NONE)
+            self.report(command, push_status_t.MOVING, push_status_t.NONE)
         else:
-            self.report(command, grrl.push_status_t.REFUSED, grrl.push_status_t.BAD_COMMAND)
+            self.report(command, push_status_t.REFUSED, push_status_t.BAD_COMMAND)
 
     def may(self, command):
         x0, y0, x1, y1 = WORKSPACE_M
@@ -55,7 +55,7 @@ class Robot:
             x0 <= x <= x1 and y0 <= y <= y1 for x, y in (command.start, command.end)))
 
     def report(self, command, state, reason):
-        status = grrl.push_status_t()
+        status = push_status_t()
         status.utime, status.session_id = int(time.time() * 1e6), self.session
         status.agent_session_id = command.session_id  # these three say which push this is about
         status.trial_id, status.cmd_seq = command.trial_id, command.cmd_seq
@@ -67,10 +67,10 @@ class Robot:
         if self.command:
             reason = self.plant.step(1.0 / FRAMES_PER_S)
             if reason is not None:  # the tool is lifted, and the object lies still
-                self.report(self.command, grrl.push_status_t.DONE, reason)
+                self.report(self.command, push_status_t.DONE, reason)
                 self.command = None
         self.seq += 1
-        points = grrl.points_t()
+        points = points_t()
         points.utime, points.session_id, points.seq = int(time.time() * 1e6), self.session, self.seq
         points.mode, points.phase = points.REAL_TIME, points.UNKNOWN  # the agent goes by the status
         points.id, points.x, points.y = self.plant.see()
@@ -78,7 +78,7 @@ class Robot:
         self.bus.publish("GRRL_POINTS", points.encode())
 
     def stop(self, reason):
-        stop = grrl.stop_t()
+        stop = stop_t()
         stop.utime, stop.session_id = int(time.time() * 1e6), self.session
         stop.reason = reason
         for _ in range(3):  # one may get lost
@@ -123,11 +123,11 @@ class Hinge:
         blocked = not all([self.turn(i, x, y) for i in (0, 1)])
         self.way += way if self.touched is not None else 0.0
         if blocked:
-            return grrl.push_status_t.BLOCKED
+            return push_status_t.BLOCKED
         if self.touched is not None and self.way >= self.push.travel:
-            return grrl.push_status_t.REACHED
+            return push_status_t.REACHED
         if self.at >= self.length:
-            return grrl.push_status_t.MISSED if self.touched is None else grrl.push_status_t.REACHED
+            return push_status_t.MISSED if self.touched is None else push_status_t.REACHED
         return None
 
     def turn(self, i, x, y):
@@ -162,7 +162,7 @@ def main():
         while (left := due - time.monotonic()) > 0 and not pressed:
             if select.select([bus.fileno()], [], [], left)[0]:
                 bus.handle()
-    robot.stop(grrl.stop_t.OPERATOR)
+    robot.stop(stop_t.OPERATOR)
 
 
 if __name__ == "__main__":

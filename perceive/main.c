@@ -7,49 +7,20 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "doubts.h"
 #include "handle.h"
 #include "motion.h"
 #include "options.h"
-#include "pace.h"
 #include "report.h"
+#include "run.h"
 #include "tracks.h"
 
 #include "grrl/grrl.h"
 
 enum { EXIT_FINE = 0, EXIT_INPUT = 1 };
-enum { TERM_NODES = 4 * GRRL_MAX_LINKS + 8 * GRRL_MAX_JOINTS + 8, TERM_BYTES = 32 * TERM_NODES };
-
-/* Links at least this long are labelled large, as for the learner. */
-#define LARGE_M 0.15f
-
-/* A body whose size changes by this share is not planar and at a constant distance from the camera.
- */
-#define SIZE_CHANGE 0.05f
-
-/* The library gets a pixel as a millimetre. */
-static const float pixel_m = 0.001f;
-
-static struct grrl_perception perception;
-
-struct unit {
-    const char *name;
-    float metres;
-};
-
 static int fail(const char *what)
 {
     (void)fprintf(stderr, "grrl-perceive: %s\n", what);
     return EXIT_INPUT;
-}
-
-static struct unit unit_of(enum grrl_unit unit, bool in_pixels)
-{
-    if (unit == GRRL_UNIT_AS_IN_FILE)
-        unit = in_pixels ? GRRL_UNIT_PX : GRRL_UNIT_M;
-    return unit == GRRL_UNIT_PX   ? (struct unit){"px", pixel_m}
-           : unit == GRRL_UNIT_MM ? (struct unit){"mm", 0.001f}
-                                  : (struct unit){"m", 1.0f};
 }
 
 static FILE *open_input(const char *path)
@@ -74,7 +45,7 @@ static bool close_output(FILE *file, const char *path)
 
 static int perceive_handle(const struct grrl_perceive_options *options)
 {
-    struct unit unit = unit_of(options->unit, false);
+    struct grrl_scale unit = grrl_unit_scale(options->unit, false);
     struct grrl_tracks_error error;
     struct grrl_handle handle;
     FILE *file = open_input(options->handle);
@@ -123,98 +94,6 @@ static bool read_tracks(const struct grrl_perceive_options *options, struct grrl
     return good;
 }
 
-/* The configuration of a profile; *name is its name. */
-static struct grrl_perception_config configure(const struct grrl_perceive_options *options,
-                                               struct unit unit, const char **name)
-{
-    struct grrl_perception_config config;
-    bool camera = options->profile == GRRL_PROFILE_CAMERA ||
-                  (options->profile == GRRL_PROFILE_OF_UNIT && strcmp(unit.name, "px") == 0);
-    if (camera)
-        grrl_perception_config_camera(&config, pixel_m);
-    else
-        grrl_perception_config_default(&config);
-    if (options->noise > 0.0f)
-        config.noise_m = options->noise * unit.metres;
-    *name = camera ? "camera" : "tracker";
-    return config;
-}
-
-static void to_metres(struct grrl_tracks *tracks, struct unit unit)
-{
-    for (size_t i = 0; i < tracks->n_points; i++) {
-        tracks->x[i] *= unit.metres;
-        tracks->y[i] *= unit.metres;
-    }
-}
-
-static struct grrl_frame frame_of(const struct grrl_tracks *tracks, size_t i)
-{
-    const struct grrl_tracks_frame *in = &tracks->frame[i];
-    return (struct grrl_frame){in->n, tracks->id + in->first, tracks->x + in->first,
-                               tracks->y + in->first};
-}
-
-/* Measures the noise over all frames: a file does not say when things were at rest. */
-static bool measure_noise(const struct grrl_tracks *tracks, float *noise_m)
-{
-    static struct grrl_noise noise;
-    grrl_noise_init(&noise);
-    for (size_t i = 0; i < tracks->n_frames; i++) {
-        struct grrl_frame frame = frame_of(tracks, i);
-        grrl_noise_observe(&noise, &frame);
-    }
-    enum grrl_status status = grrl_noise_estimate(&noise, noise_m);
-    if (status == GRRL_ERR_NONE)
-        (void)fail(
-            "--noise auto: too few points are visible in three consecutive frames; give --noise X");
-    else if (status != GRRL_OK)
-        (void)fail("--noise auto: the points do not scatter, or are rounded; give --noise X");
-    return status == GRRL_OK;
-}
-
-/*
- * Replays the recording as pushes: frames at rest are averaged, others become keyframes when
- * something has moved enough. As in the agent, the estimate after each push builds on the previous
- * one. The last frame counts as rest; with only two frames, the push between them was not seen.
- * Ends early if there are more tracks than the library holds.
- */
-static enum grrl_status observe(const struct grrl_tracks *tracks)
-{
-    static const struct grrl_frame unseen = {0};
-    for (size_t i = 0; i < tracks->n_frames; i++) {
-        struct grrl_frame frame = frame_of(tracks, i);
-        if (i == 1 && tracks->n_frames == 2 && tracks->frame[i].pushing)
-            grrl_perception_observe(&perception, &unseen, true);
-        bool pushing = tracks->frame[i].pushing && i + 1 < tracks->n_frames;
-        grrl_perception_observe(&perception, &frame, pushing);
-        if (perception.counts.overflow > 0)
-            return GRRL_ERR_FULL;
-        if (tracks->frame[i].settled) {
-            enum grrl_status status = grrl_perception_update(&perception);
-            if (status != GRRL_OK && status != GRRL_ERR_NONE) /* nothing seen yet */
-                return status;
-        }
-    }
-    return grrl_perception_update(&perception);
-}
-
-static enum grrl_status print_term(const struct grrl_model *model, float large_m, char *text,
-                                   size_t capacity)
-{
-    static struct grrl_term_node nodes[TERM_NODES];
-    struct grrl_term_store store;
-    struct grrl_graph graph;
-    struct grrl_name names[GRRL_MAX_LINKS];
-    struct grrl_edge edges[GRRL_MAX_JOINTS];
-    grrl_term term;
-    grrl_term_store_init(&store, nodes, TERM_NODES);
-    grrl_relational_state_of(model, large_m, &graph, names, edges);
-    enum grrl_status status =
-        grrl_graph_to_term(&store, &graph, names, edges, model->n_joints, true, &term);
-    return status == GRRL_OK ? grrl_term_print(&store, term, capacity, text, NULL) : status;
-}
-
 static FILE *open_output(const char *path)
 {
     FILE *file = fopen(path, "w");
@@ -243,137 +122,60 @@ static bool write_motion(const char *path, const struct grrl_report *report)
     return close_output(file, path) && good;
 }
 
-static int report_model(const struct grrl_perceive_options *options,
-                        const struct grrl_tracks *tracks, struct unit unit, const char *profile)
+static int write_report(const struct grrl_perceive_options *options, const struct grrl_run *run)
 {
-    static char term[TERM_BYTES];
-    static struct grrl_warnings warnings;
-    const struct grrl_model *model = grrl_perception_model(&perception);
-    enum grrl_status status = print_term(model, LARGE_M, term, sizeof term);
-    if (status != GRRL_OK)
-        return fail(grrl_status_text(status));
-    double per_metre = 1.0 / (double)unit.metres;
-    struct grrl_report report = {.model = model,
-                                 .perception = &perception,
-                                 .counts = &perception.counts,
-                                 .recording = tracks,
-                                 .warnings = &warnings,
-                                 .term = term,
-                                 .unit = unit.name,
-                                 .profile = profile,
-                                 .per_metre = per_metre,
-                                 .noise = (double)perception.config.noise_m * per_metre,
-                                 .frames = (unsigned)tracks->n_frames,
-                                 .tracks = (unsigned)(grrl_tracks_count_ids(tracks) +
-                                                      tracks->left_out.n + tracks->n_renewed),
-                                 .keyframes = perception.counts.keyframes_high,
-                                 .y_down = strcmp(unit.name, "px") == 0};
-    bool said = options->log != NULL || options->unit != GRRL_UNIT_AS_IN_FILE;
-    grrl_doubt_input(tracks, &warnings);
-    grrl_doubt_unit(tracks, &report, said, &warnings);
-    grrl_doubt_losses(&report, &warnings);
-    grrl_warnings_print(stderr, &warnings);
-    if (options->svg != NULL && !write_svg(options->svg, &report))
+    grrl_warnings_print(stderr, run->report.warnings);
+    if (options->svg != NULL && !write_svg(options->svg, &run->report))
         return EXIT_INPUT;
-    if (options->motion != NULL && !write_motion(options->motion, &report))
+    if (options->motion != NULL && !write_motion(options->motion, &run->upright))
         return EXIT_INPUT;
-    (options->json ? grrl_report_json : grrl_report_text)(stdout, &report);
+    (options->json ? grrl_report_json : grrl_report_text)(stdout, &run->report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
-/* Whether the size of a body changes too much for the rigid model. */
-static bool sizes_change(void)
+static const char *reason(enum grrl_run_result result, enum grrl_status status)
 {
-    const struct grrl_model *model = grrl_perception_model(&perception);
-    for (uint8_t b = 0; b < model->n_bodies; b++)
-        if (grrl_perception_size_change(&perception, b) > SIZE_CHANGE)
-            return true;
-    return false;
-}
-
-static unsigned unassigned(const struct grrl_model *model)
-{
-    unsigned n = 0;
-    for (uint16_t i = 0; i < model->n_features; i++)
-        n += model->feature_body[i] == GRRL_FEATURE_NONE;
-    return n;
-}
-
-/*
- * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
- * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
- */
-static enum grrl_status observe_growing(const struct grrl_perception_config *config,
-                                        const struct grrl_tracks *tracks)
-{
-    static struct grrl_perception rigid;
-    struct grrl_perception_config growing = *config;
-    if (config->static_background || !sizes_change())
-        return GRRL_OK;
-    rigid = perception;
-    growing.sizes_change = true;
-    enum grrl_status status = grrl_perception_init(&perception, &growing);
-    status = status == GRRL_OK ? observe(tracks) : status;
-    if (status != GRRL_OK ||
-        grrl_perception_model(&perception)->n_bodies >= grrl_perception_model(&rigid)->n_bodies ||
-        unassigned(grrl_perception_model(&perception)) > unassigned(grrl_perception_model(&rigid)))
-        perception = rigid;
-    return GRRL_OK;
-}
-
-/* More tracks than the library holds: tries again with the most informative ones. */
-static enum grrl_status observe_chosen(const struct grrl_perception_config *config,
-                                       struct grrl_tracks *tracks)
-{
-    if (!grrl_tracks_choose(tracks, GRRL_MAX_FEATURES))
-        return GRRL_ERR_FULL;
-    enum grrl_status status = grrl_perception_init(&perception, config);
-    return status == GRRL_OK ? observe(tracks) : status;
-}
-
-static int perceive_with(const struct grrl_perception_config *config,
-                         const struct grrl_perceive_options *options, struct grrl_tracks *tracks,
-                         struct unit unit, const char *profile)
-{
-    enum grrl_status status = grrl_perception_init(&perception, config);
-    status = status == GRRL_OK ? observe(tracks) : status;
-    if (perception.counts.overflow > 0)
-        status = observe_chosen(config, tracks);
-    if (status == GRRL_OK)
-        status = observe_growing(config, tracks);
-    if (status == GRRL_ERR_NONE && perception.counts.refused > 0)
-        return fail("every point lies too far from the origin: pixels or millimetres? See --unit");
-    if (status == GRRL_ERR_NONE)
-        return fail("no point is visible in any frame");
-    if (status != GRRL_OK)
-        return fail(grrl_status_text(status));
-    return report_model(options, tracks, unit, profile);
+    switch (result) {
+    case GRRL_RUN_NO_PIXELS:
+        return "the profile camera is for pixels: name the columns x_px and y_px, or give --unit "
+               "px";
+    case GRRL_RUN_FEW_FOR_NOISE:
+        return "--noise auto: too few points are visible in three consecutive frames; give --noise "
+               "X";
+    case GRRL_RUN_NO_NOISE:
+        return "--noise auto: the points do not scatter, or are rounded; give --noise X";
+    case GRRL_RUN_TOO_FAR:
+        return "every point lies too far from the origin: pixels or millimetres? See --unit";
+    case GRRL_RUN_NOTHING_SEEN:
+        return "no point is visible in any frame";
+    case GRRL_RUN_OUT_OF_MEMORY:
+        return "out of memory";
+    case GRRL_RUN_BAD_NOISE:
+        return grrl_status_text(GRRL_ERR_ARGUMENT);
+    case GRRL_RUN_FINE:
+    case GRRL_RUN_FAILED:
+        break;
+    }
+    return grrl_status_text(status);
 }
 
 static int perceive_tracks(const struct grrl_perceive_options *options)
 {
+    static struct grrl_run run;
     struct grrl_tracks tracks;
     if (!read_tracks(options, &tracks))
         return EXIT_INPUT;
-    struct unit unit = unit_of(options->unit, tracks.in_pixels);
-    int result = EXIT_INPUT;
-    const char *profile;
-    if (options->profile == GRRL_PROFILE_CAMERA && strcmp(unit.name, "px") != 0) {
-        (void)fail("the profile camera is for pixels: name the columns x_px and y_px, or give "
-                   "--unit px");
-    } else {
-        struct grrl_perception_config config = configure(options, unit, &profile);
-        to_metres(&tracks, unit);
-        if (options->noise_from_points && !measure_noise(&tracks, &config.noise_m))
-            result = EXIT_INPUT;
-        else if (!grrl_tracks_join_renewed(&tracks, config.noise_m) ||
-                 !grrl_pace_configure(&tracks, &config))
-            result = fail("out of memory");
-        else
-            result = perceive_with(&config, options, &tracks, unit, profile);
-    }
+    struct grrl_run_config config = {.unit = options->unit,
+                                     .unit_said = options->log != NULL ||
+                                                  options->unit != GRRL_UNIT_AS_IN_FILE,
+                                     .profile = options->profile,
+                                     .noise = options->noise,
+                                     .noise_from_points = options->noise_from_points};
+    enum grrl_run_result result = grrl_run_tracks(&run, &config, &tracks);
+    int status =
+        result == GRRL_RUN_FINE ? write_report(options, &run) : fail(reason(result, run.status));
     grrl_tracks_free(&tracks);
-    return result;
+    return status;
 }
 
 int main(int argc, char **argv)

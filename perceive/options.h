@@ -5,11 +5,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "run.h"
+
 #include "cli/options.h"
-
-enum grrl_unit { GRRL_UNIT_AS_IN_FILE, GRRL_UNIT_M, GRRL_UNIT_MM, GRRL_UNIT_PX };
-
-enum grrl_profile { GRRL_PROFILE_OF_UNIT, GRRL_PROFILE_TRACKER, GRRL_PROFILE_CAMERA };
 
 struct grrl_perceive_options {
     const char *tracks; /* CSV; exactly one of the first three is set */

@@ -13,11 +13,8 @@
 #include <nanobind/stl/tuple.h>
 
 extern "C" {
-#include "doubts.h"
 #include "motion.h"
-#include "report.h"
-#include "tracks.h"
-#include "warnings.h"
+#include "run.h"
 }
 
 namespace grrl_python
@@ -26,8 +23,6 @@ namespace grrl_python
 namespace
 {
 
-constexpr float large_m =
-    0.15f; /* links from this length on are called large; as for the learner */
 constexpr double measured = -1.0; /* estimate the noise from the points */
 
 /* A recording with its storage. */
@@ -38,25 +33,19 @@ struct Tracks {
     ~Tracks() { grrl_tracks_free(&all); }
     Tracks(const Tracks &) = delete;
     Tracks &operator=(const Tracks &) = delete;
-
-    grrl_frame frame(size_t i) const
-    {
-        const grrl_tracks_frame &in = all.frame[i];
-        return {in.n, all.id + in.first, all.x + in.first, all.y + in.first};
-    }
 };
 
-struct Unit {
-    const char *name;
-    float metres;
-};
-
-Unit unit_of(const std::string &name)
+grrl_unit unit_of(const std::string &name)
 {
-    for (Unit unit : {Unit{"px", 0.001f}, Unit{"mm", 0.001f}, Unit{"m", 1.0f}})
-        if (name == unit.name)
+    for (grrl_unit unit : {GRRL_UNIT_PX, GRRL_UNIT_MM, GRRL_UNIT_M})
+        if (name == grrl_unit_scale(unit, false).name)
             return unit;
     throw nb::value_error("unit must be 'px', 'mm' or 'm'");
+}
+
+double metres_of(grrl_unit unit)
+{
+    return static_cast<double>(grrl_unit_scale(unit, false).metres);
 }
 
 template <typename T> T *copy_of(const T *from, size_t n)
@@ -107,125 +96,44 @@ void fill(Tracks &tracks, const Ids &id, const Floats &x, const Floats &y, const
     all.frame = copy_of(frames.data(), frames.size());
 }
 
-/* One recording on its way to an answer; the steps of grrl-perceive. */
+/* One recording on its way to an answer. */
 struct Run {
     Tracks tracks;
-    Unit unit{"m", 1.0f};
-    std::string profile;
-    bool said = true; /* the unit was named by the user */
-    double noise = 0.0;
-    std::unique_ptr<grrl_perception> perception = std::make_unique<grrl_perception>();
-    grrl_warnings warnings{};
-    std::string term;
+    grrl_run_config config{};
+    std::unique_ptr<grrl_run> run = std::make_unique<grrl_run>();
 
-    void run(bool drop_lost);
-    grrl_report report() const;
-
-private:
-    float measure_noise() const;
-    grrl_status observe();
-    void begin(const grrl_perception_config &config);
-
-    unsigned n_tracks_ = 0; /* ids in the input; counting takes a sort */
+    void perceive(bool drop_lost);
 };
 
-float Run::measure_noise() const
+void Run::perceive(bool drop_lost)
 {
-    auto estimate = std::make_unique<grrl_noise>();
-    grrl_noise_init(estimate.get());
-    for (size_t i = 0; i < tracks.all.n_frames; i++) {
-        grrl_frame frame = tracks.frame(i);
-        grrl_noise_observe(estimate.get(), &frame);
-    }
-    float noise_m = 0.0f;
-    grrl_status status = grrl_noise_estimate(estimate.get(), &noise_m);
-    if (status == GRRL_ERR_NONE)
+    if (drop_lost && !grrl_tracks_drop_lost(&tracks.all))
+        throw std::bad_alloc();
+    switch (grrl_run_tracks(run.get(), &config, &tracks.all)) {
+    case GRRL_RUN_FINE:
+        return;
+    case GRRL_RUN_NO_PIXELS:
+        throw std::invalid_argument("profile='camera' is for unit='px'");
+    case GRRL_RUN_FEW_FOR_NOISE:
         throw std::invalid_argument("noise='auto': too few points that are seen in three frames in "
                                     "a row; give the noise as a number");
-    if (status != GRRL_OK)
+    case GRRL_RUN_NO_NOISE:
         throw std::invalid_argument("noise='auto': the points do not scatter, or are rounded; give "
                                     "the noise as a number");
-    return noise_m;
-}
-
-void Run::begin(const grrl_perception_config &config)
-{
-    if (grrl_perception_init(perception.get(), &config) != GRRL_OK)
+    case GRRL_RUN_BAD_NOISE:
         throw std::invalid_argument("noise is out of range: a number above 0, in the unit of the "
                                     "tracks");
-}
-
-grrl_status Run::observe()
-{
-    for (size_t i = 0; i < tracks.all.n_frames; i++) {
-        grrl_frame frame = tracks.frame(i);
-        bool pushing = tracks.all.frame[i].pushing && i + 1 < tracks.all.n_frames;
-        grrl_perception_observe(perception.get(), &frame, pushing);
-        if (perception->counts.overflow > 0)
-            return GRRL_ERR_FULL;
-        if (tracks.all.frame[i].settled) {
-            grrl_status status = grrl_perception_update(perception.get());
-            if (status != GRRL_OK && status != GRRL_ERR_NONE)
-                return status;
-        }
-    }
-    return grrl_perception_update(perception.get());
-}
-
-grrl_report Run::report() const
-{
-    grrl_report report{};
-    report.model = grrl_perception_model(perception.get());
-    report.perception = perception.get();
-    report.counts = &perception->counts;
-    report.recording = &tracks.all;
-    report.warnings = &warnings;
-    report.term = term.c_str();
-    report.unit = unit.name;
-    report.profile = profile.c_str();
-    report.per_metre = 1.0 / static_cast<double>(unit.metres);
-    report.noise = static_cast<double>(perception->config.noise_m) * report.per_metre;
-    report.frames = static_cast<unsigned>(tracks.all.n_frames);
-    report.tracks = n_tracks_;
-    report.keyframes = perception->counts.keyframes_high;
-    report.y_down = std::strcmp(unit.name, "px") == 0;
-    return report;
-}
-
-void Run::run(bool drop_lost)
-{
-    grrl_tracks &all = tracks.all;
-    if (drop_lost && !grrl_tracks_drop_lost(&all))
-        throw std::bad_alloc();
-    for (size_t i = 0; i < all.n_points; i++) {
-        all.x[i] *= unit.metres;
-        all.y[i] *= unit.metres;
-    }
-    grrl_perception_config config =
-        profile_config(profile, noise, static_cast<double>(unit.metres));
-    if (noise == measured)
-        config.noise_m = measure_noise();
-    begin(config);
-    grrl_status status = observe();
-    if (perception->counts.overflow > 0) {
-        if (!grrl_tracks_choose(&all, GRRL_MAX_FEATURES))
-            throw std::bad_alloc();
-        begin(config);
-        status = observe();
-    }
-    if (status == GRRL_ERR_NONE && perception->counts.refused > 0)
+    case GRRL_RUN_TOO_FAR:
         throw std::invalid_argument("every point lies more than 100 m from the origin: is unit= "
                                     "right?");
-    if (status == GRRL_ERR_NONE)
+    case GRRL_RUN_NOTHING_SEEN:
         throw std::invalid_argument("no point is visible in any frame");
-    if (status != GRRL_OK)
-        throw std::runtime_error(grrl_status_text(status));
-    n_tracks_ = static_cast<unsigned>(grrl_tracks_count_ids(&all) + all.left_out.n);
-    term = term_of(*grrl_perception_model(perception.get()), large_m);
-    grrl_report with_doubts = report();
-    grrl_doubt_input(&all, &warnings);
-    grrl_doubt_unit(&all, &with_doubts, said, &warnings);
-    grrl_doubt_losses(&with_doubts, &warnings);
+    case GRRL_RUN_OUT_OF_MEMORY:
+        throw std::bad_alloc();
+    case GRRL_RUN_FAILED:
+        break;
+    }
+    throw std::runtime_error(grrl_status_text(run->status));
 }
 
 /* --- how the joints move ---------------------------------------------------------------------- */
@@ -275,18 +183,18 @@ MotionRow row_of(const char *text)
 }
 
 /* Of joint j in frame f, at j * frames + f: radians or units, NaN where it is not known. */
-std::vector<double> motion_of(const Run &run)
+std::vector<double> motion_of(const grrl_report &report)
 {
-    grrl_report report = run.report();
     const grrl_model &model = *report.model;
-    size_t frames = run.tracks.all.n_frames;
+    const grrl_tracks &all = *report.recording;
+    size_t frames = all.n_frames;
     std::vector<double> motion(model.n_joints * frames, std::numeric_limits<double>::quiet_NaN());
     std::map<std::pair<unsigned, unsigned>, size_t> joint_of;
     for (size_t j = 0; j < model.n_joints; j++)
         joint_of[{model.body[model.joint[j].a].number, model.body[model.joint[j].b].number}] = j;
     std::map<long long, size_t> frame_of;
     for (size_t f = 0; f < frames; f++)
-        frame_of[run.tracks.all.frame[f].number] = f;
+        frame_of[all.frame[f].number] = f;
     MemoryFile memory;
     if (memory.file == nullptr || !grrl_motion_write(memory.file, &report))
         throw std::bad_alloc();
@@ -316,25 +224,27 @@ nb::dict counts_dict(const grrl_perception_counts &counts)
 
 nb::dict answer_of(const Run &run, bool with_motion)
 {
-    grrl_report report = run.report();
+    const grrl_report &report = run.run->report;
     const grrl_tracks &all = run.tracks.all;
-    nb::dict dict = model_dict(*run.perception, *report.model, large_m, report.per_metre);
-    nb::dict counts = counts_dict(run.perception->counts);
-    counts["beyond_capacity"] = all.left_out.n_points + run.perception->counts.overflow;
+    nb::dict dict = model_dict(*report.perception, *report.model, GRRL_RUN_LARGE_M,
+                               report.per_metre, report.unit);
+    nb::dict counts = counts_dict(*report.counts);
+    counts["beyond_capacity"] = all.left_out.n_points + report.counts->overflow;
     counts["empty"] = all.lost.empty;
     counts["marked"] = all.lost.marked;
     counts["frozen"] = all.lost.frozen;
     counts["tracks"] = report.tracks;
     counts["tracks_left_out"] = all.left_out.n;
+    counts["tracks_joined"] = all.n_renewed;
     dict["counts"] = counts;
     dict["noise"] = report.noise;
     nb::list warnings;
-    for (unsigned i = 0; i < run.warnings.n; i++)
-        warnings.append(run.warnings.text[i]);
+    for (unsigned i = 0; i < report.warnings->n; i++)
+        warnings.append(report.warnings->text[i]);
     dict["warnings"] = warnings;
     size_t joints = report.model->n_joints;
     if (with_motion)
-        dict["motion"] = array_of(motion_of(run), {joints, all.n_frames});
+        dict["motion"] = array_of(motion_of(run.run->upright), {joints, all.n_frames});
     return dict;
 }
 
@@ -345,7 +255,7 @@ void run_alone(Run &run, bool drop_lost)
     {
         nb::gil_scoped_release free;
         try {
-            run.run(drop_lost);
+            run.perceive(drop_lost);
         } catch (const std::invalid_argument &error) {
             wrong = error.what();
         }
@@ -365,10 +275,11 @@ nb::dict perceive(const Ids &id, const Floats &x, const Floats &y, const Counts 
     Run run;
     fill(run.tracks, id, x, y, count, number, pushing, settled);
     run.tracks.all.lost = {std::get<0>(lost), std::get<1>(lost), std::get<2>(lost)};
-    run.unit = unit_of(unit);
-    run.profile = profile;
-    run.noise = noise;
-    run.said = said;
+    run.config.unit = unit_of(unit);
+    run.config.unit_said = said;
+    run.config.profile = profile == "camera" ? GRRL_PROFILE_CAMERA : GRRL_PROFILE_TRACKER;
+    run.config.noise = noise == measured ? 0.0f : static_cast<float>(noise);
+    run.config.noise_from_points = noise == measured;
     run_alone(run, drop_lost);
     return answer_of(run, with_motion);
 }
@@ -419,8 +330,7 @@ public:
     Perception(const std::string &unit, const std::string &profile, double noise)
         : unit_(unit_of(unit))
     {
-        grrl_perception_config config =
-            profile_config(profile, noise, static_cast<double>(unit_.metres));
+        grrl_perception_config config = profile_config(profile, noise, metres_of(unit_));
         must(grrl_perception_init(perception_.get(), &config), "noise");
     }
 
@@ -443,15 +353,16 @@ public:
     nb::dict model() const
     {
         const grrl_model &model = *grrl_perception_model(perception_.get());
-        double per_metre = 1.0 / static_cast<double>(unit_.metres);
-        nb::dict dict = model_dict(*perception_, model, large_m, per_metre);
+        double per_metre = 1.0 / metres_of(unit_);
+        nb::dict dict = model_dict(*perception_, model, GRRL_RUN_LARGE_M, per_metre,
+                                   grrl_unit_scale(unit_, false).name);
         dict["counts"] = counts_dict(perception_->counts);
         dict["noise"] = static_cast<double>(perception_->config.noise_m) * per_metre;
         return dict;
     }
 
 private:
-    Unit unit_;
+    grrl_unit unit_;
     std::unique_ptr<grrl_perception> perception_ = std::make_unique<grrl_perception>();
 };
 

@@ -4,9 +4,11 @@ import ast
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
+import pytest
 from conftest import ROOT
 
 import grrl
@@ -64,3 +66,16 @@ def test_nothing_is_left_at_exit():
     done = subprocess.run([sys.executable, "-c", EVERYTHING], capture_output=True, text=True,
                           check=False, env={**os.environ, "GRRL_LEAK_WARNINGS": "1"})
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_messages_are_beside_it():
+    """Of the name that the C build gives them; lcm-gen's own name would hide this package."""
+    if not shutil.which("lcm-gen"):
+        pytest.skip("needs lcm-gen when the package is built")
+    import grrl_lcmtypes
+
+    points = grrl_lcmtypes.points_t()
+    points.seq, points.n_points, points.id, points.x, points.y = 7, 1, [3], [0.5], [0.25]
+    again = grrl_lcmtypes.points_t.decode(points.encode())
+    assert (again.seq, list(again.id), list(again.x)) == (7, [3], [0.5])
+    assert pathlib.Path(grrl_lcmtypes.__file__).parent.parent == HERE.parent

@@ -51,6 +51,8 @@ def assert_same(model, answer):
     for pair, said in zip(model.pairs, answer["pairs"]):
         assert pair.relation == said["relation"]
         assert g(pair.p_revolute) == said["p_revolute"]
+        assert pair.why == (said["reason"] or "their motion shows no joint, with a probability of "
+                            "0.95 and more")
     assert sorted(model.background) == sorted(answer["background"])
     assert sorted(model.unassigned) == sorted(answer["unassigned"])
 
@@ -81,7 +83,22 @@ def many(seed=5):
     return hinge(points=150, seed=seed)
 
 
-SCENES = {"hinge": hinge, "drawer": drawer, "apart": two_apart, "lost": lost, "many": many}
+def nearer(seed=6):
+    """A camera that nears: what is rigid grows."""
+    scene = hinge(seed=seed)
+    return scene * np.linspace(1, 1.4, len(scene))[:, None, None]
+
+
+def renewed(seed=7):
+    """A tracker that detects anew: the points go on under other ids."""
+    scene = hinge(frames=60, seed=seed)
+    again = np.full_like(scene, np.nan)
+    again[30:], scene[30:] = scene[30:], np.nan
+    return np.concatenate([scene, again], axis=1)
+
+
+SCENES = {"hinge": hinge, "drawer": drawer, "apart": two_apart, "lost": lost, "many": many,
+          "nearer": nearer, "renewed": renewed}
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -94,6 +111,20 @@ def test_same_answer_as_the_program(tmp_path, scene, unit, noise):
     assert_same(grrl.perceive(grrl.io.from_csv(path), unit, noise), answer)
     table = pd.read_csv(path)
     assert_same(grrl.perceive(table.sample(frac=1, random_state=1), unit, noise), answer)
+
+
+def test_same_answer_for_two_pictures(tmp_path):
+    path = tmp_path / "tracks.csv"
+    write_csv(path, hinge(frames=2))
+    answer = json.loads(run("PERCEIVE", "--json", "--unit", "mm", "--noise", "0.3", path))
+    model = grrl.perceive(grrl.io.from_csv(path), "mm", 0.3)
+    assert_same(model, answer)
+    assert model.joints
+
+
+def test_tracks_that_go_on_under_other_ids():
+    model = grrl.perceive(renewed(), "mm", 0.3)
+    assert model.counts["tracks_joined"] > 15 and model.joints[0].type == "revolute"
 
 
 def test_same_answer_for_an_array(tmp_path):

@@ -1,6 +1,6 @@
 #!/bin/bash
 # examples/robot.py as docs/robot.md starts it: a model after every push, the right term, and the red
-# button. Skipped without lcm-gen or a Python with LCM: tools/setup robot.
+# button. Skipped without a Python with LCM.
 . "$(dirname "$0")/common.sh"
 ROOT=$OLDPWD
 [ -f "$ROOT/examples/robot.py" ] || ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
@@ -9,19 +9,19 @@ python=
 for candidate in "$ROOT/build/robot/venv/bin/python" "$ROOT/build/mujoco/venv/bin/python" python3; do
     "$candidate" -c 'import lcm' 2>/dev/null && python=$candidate && break
 done
-if [ -z "$python" ] || ! command -v lcm-gen >/dev/null; then
-    echo "skipped: no lcm-gen, or no Python with lcm (python3 -m venv build/robot/venv &&" \
+if [ -z "$python" ]; then
+    echo "skipped: no Python with lcm (python3 -m venv build/robot/venv &&" \
         "build/robot/venv/bin/pip install lcm)"
     exit 77
 fi
-lcm-gen -p --ppath types "$ROOT"/lcmtypes/*.lcm || fail "lcm-gen"
-export PYTHONPATH=types PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1
+PYTHONPATH=$(dirname "$(dirname "$SIM")")/lcmtypes/python
+export PYTHONPATH PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1
 cat >listen.py <<'END'
 import sys
-import grrl
 import lcm
+from grrl_lcmtypes import model_t
 bus = lcm.LCM(sys.argv[1])
-bus.subscribe("GRRL_MODEL", lambda _, data: print("model", grrl.model_t.decode(data).cmd_seq))
+bus.subscribe("GRRL_MODEL", lambda _, data: print("model", model_t.decode(data).cmd_seq))
 print("ready")
 while True:
     bus.handle()

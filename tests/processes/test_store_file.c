@@ -341,7 +341,7 @@ static void a_torn_end_is_cut_and_counted(void **state)
         assert_true(n >= most); /* a longer file never gives less */
         most = n;
         char count[64];
-        (void)snprintf(count, sizeof count, "%lu entries before the cut", (unsigned long)n);
+        (void)snprintf(count, sizeof count, "%lu entries before the end", (unsigned long)n);
         assert_non_null(strstr(report.text, count));
     }
     /* all but the very last record */

@@ -15,8 +15,7 @@ TYPES = ("revolute", "prismatic")
 BACKGROUND = -1
 UNASSIGNED = -2
 _RELATIONS = ("undetermined", "disconnected")
-_WHY = ("they moved too little, or in too few ways, to tell",
-        "their motion shows no joint, with a probability of 0.95 and more")
+_NO_JOINT = "their motion shows no joint, with a probability of 0.95 and more"
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +105,7 @@ class Pair:
         Indices into `Model.bodies`.
     relation : {"undetermined", "disconnected"}
     why : str
-        In words.
+        In words; of an undetermined pair those of `grrl-perceive`.
     p_revolute, p_prismatic, p_disconnected : float
         By the motion of the two alone; a third each: it does not tell.
     """
@@ -228,8 +227,9 @@ def _joints(raw: dict[str, Any]) -> tuple[Joint, ...]:
 
 def _pairs(raw: dict[str, Any]) -> tuple[Pair, ...]:
     return tuple(
-        Pair(int(a), int(b), _RELATIONS[relation], _WHY[relation], *(float(x) for x in p))
-        for (a, b), relation, p in zip(raw["pair_ends"], raw["pair_relation"], raw["pair_p"]))
+        Pair(int(a), int(b), _RELATIONS[relation], reason or _NO_JOINT, *(float(x) for x in p))
+        for (a, b), relation, reason, p in zip(raw["pair_ends"], raw["pair_relation"],
+                                               raw["pair_reason"], raw["pair_p"]))
 
 
 def model_from(raw: dict[str, Any], unit: str, **rest: Any) -> Model:
