@@ -1,4 +1,4 @@
-/* Life of the agent, messages coming in, sessions. */
+/* Life of the agent, incoming messages, sessions. */
 #include "agent.h"
 
 #include <inttypes.h>
@@ -39,7 +39,7 @@ void agent_event(struct grrl_agent *agent, enum grrl_agent_event_kind kind)
     emit(agent, &event);
 }
 
-/* Counts a message; tells of the first malformed one, later ones only count. */
+/* Counts a message; reports the first malformed one and only counts later ones. */
 static bool accepted(struct grrl_agent *agent, bool good, const struct grrl_wire_why *why)
 {
     agent->counts.received++;
@@ -51,9 +51,9 @@ static bool accepted(struct grrl_agent *agent, bool good, const struct grrl_wire
 }
 
 /*
- * Whether a message comes from the plant the agent deals with. Another session takes over when the
- * known one has been silent: it was restarted. An observer's clock is that of the messages, because
- * a log is read faster than it was written.
+ * Whether a message comes from the known plant. Another session takes over if the known one has
+ * been silent: it was restarted. An observer uses the clock of the messages, because a log is read
+ * faster than it was written.
  */
 static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t utime)
 {
@@ -61,12 +61,12 @@ static bool known_plant(struct grrl_agent *agent, int64_t session_id, int64_t ut
     if (agent->plant_session_id != 0 && session_id != agent->plant_session_id) {
         if (now - agent->plant_heard_us < SILENCE_US) {
             if (agent->counts.foreign++ == 0)
-                agent_note(agent, "another simulator or tracker sends here, too, and is ignored "
-                                  "while the known one is there: give each an LCM provider (port) "
-                                  "of its own");
+                agent_note(agent,
+                           "another simulator or tracker is sending, too; it is ignored while the "
+                           "known one is present: give each its own LCM provider (port)");
             return false;
         }
-        agent_note(agent, "the simulator or tracker was restarted, the trial is abandoned");
+        agent_note(agent, "the simulator or tracker was restarted; the trial is abandoned");
         agent_abandon(agent);
         memset(&agent->trial, 0, sizeof agent->trial);
         agent->seq = 0;
@@ -102,8 +102,9 @@ static void on_trial(const lcm_recv_buf_t *buffer, const char *channel, void *us
 }
 
 /*
- * Whatever comes on this channel stops the agent, also what cannot be decoded: a stop sent by a
- * robot with other message types must not be lost. Only one that names another agent is none.
+ * Any message on this channel stops the agent, even one that cannot be decoded: a stop sent by a
+ * robot with other message types must not be lost. The only exception is one that names another
+ * agent.
  */
 static void on_stop(const lcm_recv_buf_t *buffer, const char *channel, void *user)
 {
@@ -122,7 +123,8 @@ static void on_stop(const lcm_recv_buf_t *buffer, const char *channel, void *use
     agent->end = GRRL_AGENT_STOPPED;
 }
 
-/* Not so if the robot left it out or filled in whom else it knows. */
+/* Whether a status names another agent; not if the robot left the field empty or filled in its own
+ * or the tracker's session. */
 static bool names_an_agent(const struct grrl_agent *agent, const grrl_push_status_t *status)
 {
     int64_t named = status->agent_session_id;
@@ -170,12 +172,12 @@ static enum grrl_status subscribe(struct grrl_agent *agent)
     };
     for (int i = 0; i < GRRL_AGENT_SUBSCRIPTIONS; i++) {
         if (wanted[i].handler == (agent->config.observe ? on_stop : on_decision))
-            continue; /* an observer moves nothing, and one who acts decides */
+            continue; /* an observer moves nothing; an agent that acts decides by itself */
         agent->subscriptions[i] =
             lcm_subscribe(agent->lcm, wanted[i].channel, wanted[i].handler, agent);
         if (agent->subscriptions[i] == NULL)
             return GRRL_ERR_IO;
-        /* 0 is unbounded: LCM's own default drops the newest of 30 without a word. */
+        /* 0 is unbounded; LCM's default of 30 silently drops the newest message. */
         (void)lcm_subscription_set_queue_capacity(agent->subscriptions[i], 0);
     }
     return GRRL_OK;
@@ -224,7 +226,7 @@ const char *grrl_agent_stop_text(struct grrl_agent *agent)
     static const char *const reasons[] = {"OPERATOR", "LIMIT", "COLLISION", "FAULT"};
     if (agent->stop.session_id == 0)
         (void)snprintf(agent->note, sizeof agent->note,
-                       "stopped by a message on GRRL_STOP that is no stop_t of this version");
+                       "stopped by a message on GRRL_STOP that is not a stop_t of this version");
     else
         (void)snprintf(agent->note, sizeof agent->note,
                        "stopped by GRRL_STOP from session %" PRId64 ", reason %s",

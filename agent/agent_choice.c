@@ -1,4 +1,5 @@
-/* agent_choice.c: which push is next, kept on the table, and whether one more is needed. */
+/* agent_choice.c: chooses the next push, keeps it on the table, and tells how certain the model is.
+ */
 #include <stdio.h>
 
 #include "agent_internal.h"
@@ -15,7 +16,7 @@ static bool on_table(const struct grrl_agent_table *table, struct grrl_vec2 poin
            point.y <= table->y1_m;
 }
 
-/* The tool moves on the line from start to end: it is on the table where both are. */
+/* The tool moves on the line from start to end: it is on the table if both are. */
 static bool stays(const struct grrl_agent *agent, const struct grrl_push *push)
 {
     return on_table(&agent->config.table, push->start_m) &&
@@ -23,8 +24,8 @@ static bool stays(const struct grrl_agent *agent, const struct grrl_push *push)
 }
 
 /*
- * The first push that stays on the table, in the order of links and directions from behind the one
- * that was refused; each time one farther on, so that not always the same takes its place.
+ * The first push that stays on the table, in the order of links and directions after the refused
+ * one. Each time the search starts one farther on, so the replacement is not always the same.
  */
 static enum grrl_status replace(struct grrl_agent *agent, const struct grrl_decision *refused,
                                 struct grrl_decision *decision)
@@ -48,9 +49,9 @@ static enum grrl_status replace(struct grrl_agent *agent, const struct grrl_deci
 }
 
 /*
- * A choice cannot be taken back: with a table the learner is copied first. What is not undone is
- * that the policy counts the refused choice as a use of its source; only what a full store forgets
- * depends on that.
+ * A choice cannot be undone, so with a table the learner is copied first. One thing is not
+ * restored: the policy counts the refused choice as a use of its source, which only affects what a
+ * full store evicts.
  */
 enum grrl_status agent_choose(struct grrl_agent *agent, struct grrl_decision *decision)
 {
@@ -66,7 +67,7 @@ enum grrl_status agent_choose(struct grrl_agent *agent, struct grrl_decision *de
     if (agent_mistake(agent, GRRL_MISTAKE_PUSH_OFF_TABLE, 1)) {
         (void)snprintf(agent->note, sizeof agent->note,
                        "the push chosen, f%u from (%.3f, %.3f) to (%.3f, %.3f) m, would leave "
-                       "--table and is not sent: another takes its place",
+                       "--table and is not sent: another one replaces it",
                        (unsigned)refused.body_number, (double)refused.push.start_m.x,
                        (double)refused.push.start_m.y, (double)refused.push.end_m.x,
                        (double)refused.push.end_m.y);
@@ -75,7 +76,7 @@ enum grrl_status agent_choose(struct grrl_agent *agent, struct grrl_decision *de
     return status;
 }
 
-/* The probability with which a pair is decided; 0 for one that is not. */
+/* The probability with which a pair is decided; 0 if it is not. */
 static float decided(const struct grrl_pair *pair)
 {
     switch (pair->relation) {

@@ -1,16 +1,16 @@
-/* agent_internal.h: how the parts of the agent's core call one another. */
+/* agent_internal.h: the interfaces between the parts of the agent's core. */
 #ifndef GRRL_AGENT_INTERNAL_H
 #define GRRL_AGENT_INTERNAL_H
 
 #include "agent.h"
 
-/* Where the agent stands in a trial. */
+/* The agent's phase of a trial. */
 enum phase {
-    PHASE_NONE,     /* no trial, or not this one: nothing is taken in */
-    PHASE_WATCHING, /* frames of push cmd_seq are taken in until they settle */
-    PHASE_JUDGING,  /* the model after cmd_seq is out, the supervisor's word is awaited */
+    PHASE_NONE,     /* no trial, or not this one: frames are ignored */
+    PHASE_WATCHING, /* frames of push cmd_seq are observed until they settle */
+    PHASE_JUDGING,  /* the model after cmd_seq is sent; waiting for the supervisor's judgement */
     PHASE_CHOOSING, /* judged, but there is no next push yet */
-    PHASE_COMMANDED /* push cmd_seq is out, no frame of it has come yet */
+    PHASE_COMMANDED /* push cmd_seq is sent; no frame of it has arrived yet */
 };
 
 /* agent_trial.c: the course of a trial. */
@@ -20,32 +20,32 @@ void agent_take_status(struct grrl_agent *agent, const grrl_push_status_t *statu
 void agent_take_decision(struct grrl_agent *agent, const grrl_decision_t *decision);
 void agent_abandon(struct grrl_agent *agent);
 
-/* The robot moves for another agent. */
+/* Call when the robot moves for another agent. */
 void agent_meet_rival(struct grrl_agent *agent);
 
 /* agent_choice.c: the next push, within the limits. GRRL_ERR_NONE: nothing can be pushed. */
 enum grrl_status agent_choose(struct grrl_agent *agent, struct grrl_decision *decision);
 bool agent_has_table(const struct grrl_agent *agent);
 
-/* agent_plant.c: what the tracker and the robot do wrong. All are silent when observing. */
-/* A frame that is new, of a tracker that is obeyed; taken: it belongs to the trial under way. */
+/* agent_plant.c: mistakes of the tracker and the robot. All are silent when observing. */
+/* Checks a frame of the accepted tracker; taken: it belongs to the current trial. */
 void agent_watch_frame(struct grrl_agent *agent, const grrl_points_t *points, bool taken);
-/* Drops the points that lie beside the table; false: the frame must not be taken in. */
+/* Drops the points off the table; false: the frame must not be used. */
 bool agent_admit_frame(struct grrl_agent *agent, grrl_points_t *points);
-/* A status of the robot, before it is taken in. */
+/* Checks a status of the robot before it is used. */
 void agent_watch_status(struct grrl_agent *agent, const grrl_push_status_t *status);
-/* Another tracker and robot took the place of those known. */
+/* Call when another tracker and robot have replaced the known ones. */
 void agent_forget_plant(struct grrl_agent *agent);
-/* The push under way is sent again and nothing tells that the robot has it. */
+/* Call when the current push is sent again without a sign that the robot has it. */
 void agent_watch_resend(struct grrl_agent *agent);
-/* Counts it; true if it is the first, which must be told. */
+/* Counts a mistake; true if it is the first, which must be reported. */
 bool agent_mistake(struct grrl_agent *agent, enum grrl_agent_mistake mistake, int64_t n);
 
-/* agent_publish.c: messages going out. All are silent when observing. */
+/* agent_publish.c: outgoing messages. All are silent when observing. */
 void agent_make_model(struct grrl_agent *agent);
 void agent_make_decision(struct grrl_agent *agent, const struct grrl_decision *decision);
 
-/* Everything the other side may be waiting for, from what is cached. */
+/* Sends everything the other side may be waiting for, from the cache. */
 void agent_answer(struct grrl_agent *agent);
 void agent_publish_status(struct grrl_agent *agent);
 void agent_publish_model(struct grrl_agent *agent);

@@ -1,9 +1,9 @@
 /*
- * agent_plant.c: what trackers and robots do wrong.
+ * agent_plant.c: detects mistakes of trackers and robots.
  *
- * A wrong unit, a message on another channel or a phase that never changes does no harm that the
- * protocol would notice: nothing happens, for ever, or the wrong thing. So the agent watches for
- * the mistakes people make, tells of each kind once, with what to do, and then counts.
+ * The protocol does not notice a wrong unit, a message on the wrong channel or a phase that never
+ * changes: nothing happens, or the wrong thing. So the agent looks for common mistakes, reports
+ * each kind once, with a remedy, and then counts.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -12,8 +12,9 @@
 #include "agent_internal.h"
 #include "grrl/base/settling.h"
 
-/* PATIENCE_US: how long something may look wrong. A frame is STRANGE if fewer than a quarter of its
- * points are where the frame before had a point of this id; so many in a row are no accident. */
+/* PATIENCE_US: how long something may look wrong. A frame is strange if fewer than a quarter of its
+ * points are where the previous frame had a point with that id; STRANGE_FRAMES in a row are no
+ * accident. */
 enum {
     PATIENCE_US = 2000000,
     OVERTIME_US = 5000000,
@@ -24,19 +25,20 @@ enum {
 };
 #define NEAR_M 0.05f
 
-/* Above this extent points may be millimetres; a sixteenth of them at each end may be outliers. */
+/* Above this extent the unit may be millimetres; a sixteenth of the points at each end may be
+ * outliers. */
 #define SPAN_M 2.0f
 
 static const char *const texts[GRRL_AGENT_MISTAKES] = {
     "push commands sent again after 2 s without acknowledgement",
-    "frames ignored for want of a trial",
-    "frames with other ids than the frame before",
+    "frames ignored because they belong to no trial",
+    "frames with ids unlike those of the previous frame",
     "frames refused because their points span metres",
-    "points refused beside the table",
+    "points refused because they are off the table",
     "pushes not sent because they would leave the table",
-    "times of 2 s with fewer than 20 frames",
+    "periods of 2 s with fewer than 20 frames",
     "frames at REST after 2 s of REST",
-    "frames of a push 5 s and more after its timeout",
+    "frames of a push 5 s or more after its timeout",
 };
 
 const char *grrl_agent_mistake_text(enum grrl_agent_mistake mistake)
@@ -74,17 +76,17 @@ static void watch_rate(struct grrl_agent *agent, const grrl_points_t *points, in
     plant->window_us = now;
     plant->window_n = 0;
     if (hz < LEAST_HZ && agent_mistake(agent, GRRL_MISTAKE_SLOW, 1)) {
-        (void)snprintf(agent->note, sizeof agent->note,
-                       "the tracker sends %.1f frames a second, it needs %d to 100: between two "
-                       "frames a pushed point must move less than 15 mm; track faster, or push "
-                       "slower with --speed",
-                       hz, LEAST_HZ);
+        (void)snprintf(
+            agent->note, sizeof agent->note,
+            "the tracker sends %.1f frames per second; it needs %d to 100: between two frames a "
+            "pushed point must move less than 15 mm; track faster, or push slower with --speed",
+            hz, LEAST_HZ);
         agent_note(agent, agent->note);
     }
 }
 
-/* Whether the frame before had this point, near where it is now. Ids mostly keep their order, so
- * that the one behind the last found is looked at first. */
+/* Whether the previous frame had this point near its present position. Ids mostly keep their order,
+ * so the search starts after the last one found. */
 static bool was_there(const struct grrl_agent_plant *plant, int32_t id, float x, float y,
                       int32_t *at)
 {
@@ -115,9 +117,10 @@ static void watch_ids(struct grrl_agent *agent, const grrl_points_t *points)
     memcpy(plant->x, points->x, (size_t)points->n_points * sizeof plant->x[0]);
     memcpy(plant->y, points->y, (size_t)points->n_points * sizeof plant->y[0]);
     if (plant->strange_n >= STRANGE_FRAMES && agent_mistake(agent, GRRL_MISTAKE_IDS, 1))
-        agent_note(agent, "the ids change from frame to frame: a feature must keep its id as long "
-                          "as it is tracked; an id is no place in a list and never goes to "
-                          "another feature");
+        agent_note(
+            agent,
+            "the ids change from frame to frame: a feature must keep its id as long "
+            "as it is tracked; an id is not an index in a list and never goes to another feature");
 }
 
 static void tell_no_trial(struct grrl_agent *agent, const grrl_points_t *points)
@@ -130,13 +133,13 @@ static void tell_no_trial(struct grrl_agent *agent, const grrl_points_t *points)
                        points->trial_id);
     else if (points->trial_id == 0)
         (void)snprintf(agent->note, sizeof agent->note,
-                       "frames are ignored: their trial_id is 0, but GRRL_TRIAL tells of trial "
+                       "frames are ignored: their trial_id is 0, but GRRL_TRIAL announces trial "
                        "%" PRId32 "; send that, or no GRRL_TRIAL",
                        trial->trial_id);
     else
         (void)snprintf(agent->note, sizeof agent->note,
                        "frames are ignored: they name trial %" PRId32 ", and the newest "
-                       "GRRL_TRIAL is no offer of it (trial %" PRId32 ", judged_cmd_seq %" PRId32
+                       "GRRL_TRIAL does not offer it (trial %" PRId32 ", judged_cmd_seq %" PRId32
                        "); a trial is offered with RUNNING and judged_cmd_seq -1 before its frames",
                        points->trial_id, trial->trial_id, trial->judged_cmd_seq);
     agent_note(agent, agent->note);
@@ -171,14 +174,15 @@ static void watch_rest(struct grrl_agent *agent, const grrl_points_t *points, in
     if (now - plant->rest_us >= PATIENCE_US && plant->rest_n > GRRL_SETTLING_FRAMES &&
         agent_mistake(agent, GRRL_MISTAKE_REST, 1)) {
         (void)snprintf(agent->note, sizeof agent->note,
-                       "the phase has been REST for 2 s: after %d frames at rest send SETTLED, the "
-                       "agent waits for it; or send UNKNOWN always, then it counts itself",
+                       "the phase has been REST for 2 s: after %d frames at rest send SETTLED, "
+                       "which the agent waits for; or always send UNKNOWN, and it counts by itself",
                        GRRL_SETTLING_FRAMES);
         agent_note(agent, agent->note);
     }
 }
 
-/* A push that does not end. The time is the robot's to keep, and then the object may slide. */
+/* Detects a push that does not end. The robot must keep to the time; afterwards the object may
+ * slide. */
 static void watch_moving(struct grrl_agent *agent, const grrl_points_t *points, int64_t now)
 {
     bool by_status =
@@ -188,12 +192,12 @@ static void watch_moving(struct grrl_agent *agent, const grrl_points_t *points, 
     if (moving && agent->phase == PHASE_WATCHING && agent->cmd_seq > 0 &&
         now - agent->plant.commanded_us >= allowed_us &&
         agent_mistake(agent, GRRL_MISTAKE_MOVING, 1)) {
-        (void)snprintf(
-            agent->note, sizeof agent->note,
-            "push %" PRId32 " goes on 5 s after its timeout of %.1f s: %s once the tool is "
-            "lifted and the object lies still",
-            agent->cmd_seq, (double)agent->command.timeout,
-            by_status ? "the robot must report DONE" : "the phase must become REST, then SETTLED,");
+        (void)snprintf(agent->note, sizeof agent->note,
+                       "push %" PRId32 " is not finished 5 s after its timeout of %.1f s: %s once "
+                       "the tool is lifted and the object is at rest",
+                       agent->cmd_seq, (double)agent->command.timeout,
+                       by_status ? "the robot must report DONE"
+                                 : "the phase must become REST, then SETTLED,");
         agent_note(agent, agent->note);
     }
 }
@@ -215,7 +219,7 @@ void agent_watch_frame(struct grrl_agent *agent, const grrl_points_t *points, bo
 
 /* --- points ----------------------------------------------------------------------------------- */
 
-/* The extent of the numbers but for a sixteenth of them at each end; sorts them. */
+/* The extent of the numbers without a sixteenth of them at each end; sorts them. */
 static float extent(float *values, int32_t n)
 {
     for (int32_t i = 1; i < n; i++) {
@@ -239,7 +243,7 @@ static float range(const float *values, int32_t n)
     return high - low;
 }
 
-/* Sorting is for frames that look wrong. */
+/* Sorts only if the frame looks wrong. */
 static float span_of(const float *values, int32_t n)
 {
     float sorted[GRRL_WIRE_MAX_POINTS];
@@ -259,7 +263,7 @@ static bool spans_metres(struct grrl_agent *agent, const grrl_points_t *points)
     if (agent_mistake(agent, GRRL_MISTAKE_SPAN, 1)) {
         (void)snprintf(agent->note, sizeof agent->note,
                        "the points span %.4g m and are refused: are they millimetres? x and y are "
-                       "metres; if the table is as large, say where it is with --table X0,Y0,X1,Y1",
+                       "metres; if the table is that large, specify it with --table X0,Y0,X1,Y1",
                        (double)span);
         agent_note(agent, agent->note);
     }
@@ -284,7 +288,7 @@ static void drop_off_table(struct grrl_agent *agent, grrl_points_t *points)
     points->n_points = n;
     if (n < all && agent_mistake(agent, GRRL_MISTAKE_OFF_TABLE, all - n)) {
         (void)snprintf(agent->note, sizeof agent->note,
-                       "%" PRId32 " of %" PRId32 " points lie beside --table and are refused%s",
+                       "%" PRId32 " of %" PRId32 " points lie outside --table and are refused%s",
                        all - n, all, n == 0 ? ": are both in metres, and in the same frame?" : "");
         agent_note(agent, agent->note);
     }
@@ -321,7 +325,7 @@ static void tell_unacknowledged(struct grrl_agent *agent)
     if (own->session_id != 0 && own->cmd_seq == agent->cmd_seq)
         (void)snprintf(to, left,
                        "the robot does, but not the frames, whose phase is known; ack_cmd_seq must "
-                       "become the push's cmd_seq, or the phase always be UNKNOWN");
+                       "become the cmd_seq of the push, or the phase must always be UNKNOWN");
     else if (other->session_id != 0)
         (void)snprintf(to, left,
                        "GRRL_PUSH_STATUS came for agent_session_id %" PRId64 ", trial_id %" PRId32
@@ -331,7 +335,7 @@ static void tell_unacknowledged(struct grrl_agent *agent)
                        agent->config.session_id, agent->trial_id, agent->cmd_seq);
     else
         (void)snprintf(to, left,
-                       "the robot must subscribe to GRRL_PUSH_COMMAND, obey what has its "
+                       "the robot must subscribe to GRRL_PUSH_COMMAND, obey commands with its "
                        "plant_session_id, and answer MOVING on GRRL_PUSH_STATUS");
     agent_note(agent, agent->note);
 }

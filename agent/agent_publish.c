@@ -1,4 +1,4 @@
-/* Messages going out: model, decision, command, status. */
+/* Outgoing messages: model, decision, command, status. */
 #include <string.h>
 
 #include "agent_internal.h"
@@ -143,7 +143,7 @@ static void publish_decision(struct grrl_agent *agent, int64_t now)
             &why);
 }
 
-/* The cached push, or WAIT; either way with the newest frame and revision taken in. */
+/* The cached push, or WAIT; either way with the newest frame and revision accepted. */
 static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
 {
     struct grrl_wire_why why;
@@ -162,8 +162,8 @@ static void publish_command(struct grrl_agent *agent, int64_t now, bool push)
             grrl_wire_encode_push_command(&command, GRRL_WIRE_MAX_BYTES, agent->bytes, &why), &why);
 }
 
-/* Without a supervisor nobody waits for the model, and the agent goes on at once: it goes out with
- * the next push. */
+/* Without a supervisor nobody waits for the model and the agent continues at once: the model is
+ * sent with the next push. */
 static bool unjudged_model(const struct grrl_agent *agent)
 {
     return agent->trial_id == 0 &&

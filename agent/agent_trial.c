@@ -1,16 +1,16 @@
 /*
- * The course of a trial: frames are taken in until they settle, the model goes out, the supervisor
- * judges it, the agent learns and commands the next push.
+ * The course of a trial: the agent observes frames until they settle, sends its model, the
+ * supervisor judges it, and the agent learns and commands the next push.
  *
- * Everything that is taken in is taken in once, in an order that messages lost or repeated do not
- * change; so a run over a network, in one process, and from a log all learn the same.
+ * Every input is used once, in an order that lost or repeated messages do not change; so a run over
+ * a network, in one process, and from a log all learn the same.
  */
 #include <string.h>
 
 #include "agent_internal.h"
 #include "grrl/base/settling.h"
 
-/* Between answers to frames that need none: at the camera's rate nobody waits for one. */
+/* Time between answers to frames that need none: at the camera's rate nobody waits for them. */
 enum { RESEND_US = 50000 };
 
 static void begin_trial(struct grrl_agent *agent, int32_t trial_id)
@@ -57,9 +57,9 @@ static void next_push(struct grrl_agent *agent)
 }
 
 /*
- * Takes over the decision seen on the wire if it is that of push cmd_seq. A choice made from
- * experience counts as a use of it, as it does for the agent that chose: what is evicted later, and
- * the file, depend on it.
+ * Adopts the decision seen on the wire if it is for push cmd_seq. A choice based on an entry counts
+ * as a use of that entry, as it does for the agent that chose: later evictions, and the file,
+ * depend on it.
  */
 static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
 {
@@ -74,14 +74,14 @@ static bool adopt(struct grrl_agent *agent, int32_t cmd_seq)
                               &decision) == GRRL_OK;
 }
 
-/* It looks again, perhaps at every frame: once is enough. */
+/* Reports once that nothing can be pushed; the agent may try again at every frame. */
 static void tell_blind(struct grrl_agent *agent, enum grrl_status status)
 {
     const struct grrl_model *model = grrl_perception_model(&agent->learner.perception);
     const char *text = grrl_status_text(status);
     if (status == GRRL_ERR_NONE)
         text = model->n_bodies == 0
-                   ? "no link is seen that could be pushed: each needs four points or more"
+                   ? "no link is visible that could be pushed: each needs at least four points"
                    : "no push stays on --table: move the object away from its edge";
     if (!agent->blind)
         agent_note(agent, text);
@@ -110,11 +110,11 @@ static void choose(struct grrl_agent *agent)
 
 static void end_trial(struct grrl_agent *agent)
 {
-    agent_abandon(agent); /* after learning, this forgets the object only */
+    agent_abandon(agent); /* after learning, this forgets only the object */
     agent_event(agent, GRRL_AGENT_TRIAL_END);
 }
 
-/* The model after push cmd_seq was judged: learn, and go on or not. */
+/* The model after push cmd_seq was judged: learn, then choose the next push or end. */
 static void judged(struct grrl_agent *agent)
 {
     bool discovered = agent->trial.outcome == GRRL_TRIAL_T_DISCOVERED;
@@ -126,11 +126,12 @@ static void judged(struct grrl_agent *agent)
         end_trial(agent);
 }
 
-/* A joint that has not moved yet shows in no pair: so many pushes for each link must have been in
- * vain. With none, the first joint that is found ends the run (tests/processes/test_alone.cpp). */
+/* A joint that has not moved yet does not show up in any pair, so this many pushes per link must
+ * have revealed nothing. With none, the first joint found would end the run
+ * (tests/processes/test_alone.cpp). */
 enum { VAIN_PER_LINK = 3 };
 
-/* Without a supervisor: whether what was asked for is known, or all pushes are made. */
+/* Without a supervisor: whether the model is certain enough, or all pushes are done. */
 static enum grrl_agent_end end_alone(const struct grrl_agent *agent)
 {
     const struct grrl_agent_config *config = &agent->config;
@@ -144,7 +145,7 @@ static enum grrl_agent_end end_alone(const struct grrl_agent *agent)
     return GRRL_AGENT_GOES_ON;
 }
 
-/* Nobody judges: the agent does itself. */
+/* Nobody judges, so the agent does so itself. */
 static void judge_alone(struct grrl_agent *agent)
 {
     learn(agent, false);
@@ -154,7 +155,7 @@ static void judge_alone(struct grrl_agent *agent)
         choose(agent);
         return;
     }
-    agent_publish_model(agent); /* no push follows with which it would go */
+    agent_publish_model(agent); /* no push follows that would carry it */
     end_trial(agent);
     agent->end = end;
 }
@@ -173,8 +174,8 @@ static void tell_supervised(struct grrl_agent *agent)
 {
     const struct grrl_agent_config *config = &agent->config;
     if (!agent->supervised && (config->max_pushes > 0 || config->until_sure > 0.0f))
-        agent_note(agent, "a supervisor ends the trials here: --pushes and --until-sure are for "
-                          "runs without one and do nothing");
+        agent_note(agent, "a supervisor ends the trials: --pushes and --until-sure only work "
+                          "without one and are ignored");
     agent->supervised = true;
 }
 
@@ -191,7 +192,7 @@ void agent_take_trial(struct grrl_agent *agent, const grrl_trial_t *trial)
     bool running = trial->phase == GRRL_TRIAL_T_RUNNING;
     if (!same) {
         agent_abandon(agent);
-        /* Under way already: joined in the middle, the beginning was missed. */
+        /* A trial already in progress is not joined: its beginning was missed. */
         if (running && trial->judged_cmd_seq < 0) {
             tell_supervised(agent);
             begin_trial(agent, trial->trial_id);
@@ -210,21 +211,21 @@ void agent_meet_rival(struct grrl_agent *agent)
 {
     bool alone = agent->phase != PHASE_NONE && agent->trial_id == 0;
     if (!alone)
-        return; /* with a supervisor, the frames tell whose pushes they show */
+        return; /* with a supervisor, the frames say whose pushes they show */
     agent_abandon(agent);
     agent->end = GRRL_AGENT_GAVE_WAY;
 }
 
-/* Whether a frame shows another agent's pushes. Then it teaches nothing here, but this agent stays
- * ready: when the other one is silent, the simulator turns to it. */
+/* Whether a frame shows another agent's pushes. It is then ignored, but this agent stays ready: if
+ * the other one falls silent, the simulator turns to it. */
 static bool shows_rival(struct grrl_agent *agent, const grrl_points_t *points)
 {
     int64_t session = points->agent_session_id;
     if (agent->config.observe || session == 0 || session == agent->config.session_id)
         return false;
     if (!agent->rival_seen)
-        agent_note(agent, "another agent is obeyed, this one waits: stop one of the two, or give "
-                          "each an LCM provider (port) of its own");
+        agent_note(agent, "another agent is in control and this one waits: stop one of the two, or "
+                          "give each its own LCM provider (port)");
     agent->rival_seen = true;
     return true;
 }
@@ -244,8 +245,8 @@ void agent_take_decision(struct grrl_agent *agent, const grrl_decision_t *decisi
         agent->adopted = adopt(agent, agent->cmd_seq);
 }
 
-/* The push a frame belongs to and its phase, from the robot's status if the tracker knows neither.
- */
+/* The phase of a frame and the push it belongs to, from the robot's status if the tracker knows
+ * neither. */
 static int8_t phase_of(struct grrl_agent *agent, const grrl_points_t *points, int32_t *ack)
 {
     *ack = points->ack_cmd_seq;
@@ -264,13 +265,13 @@ static int8_t phase_of(struct grrl_agent *agent, const grrl_points_t *points, in
 }
 
 /*
- * A push went on that the observer was not told of in time: its frames came before the judgement of
- * the push before or before the decision. That it goes on is a judgement, too.
+ * A push started before the observer received the judgement of the previous push, or the decision.
+ * That it started implies the judgement.
  */
 static void catch_up(struct grrl_agent *agent, int32_t ack)
 {
     if (ack != agent->cmd_seq + 1 || agent->phase == PHASE_WATCHING) {
-        agent_note(agent, "frames are missing, the trial is not learned any further");
+        agent_note(agent, "frames are missing; the rest of the trial is not learned");
         agent_abandon(agent);
         return;
     }
@@ -307,7 +308,7 @@ static void watch(struct grrl_agent *agent, grrl_points_t *points)
         agent->phase = PHASE_WATCHING;
     bool idle = agent->phase == PHASE_CHOOSING && !agent->config.observe;
     if (idle && phase == GRRL_POINTS_T_SETTLED)
-        agent->phase = PHASE_WATCHING; /* nothing was seen that could be pushed: look again */
+        agent->phase = PHASE_WATCHING; /* nothing could be pushed: observe again */
     if (agent->phase != PHASE_WATCHING || ack != agent->cmd_seq ||
         !agent_admit_frame(agent, points))
         return;
@@ -345,7 +346,7 @@ void agent_take_frame(struct grrl_agent *agent, grrl_points_t *points)
     bool ours = agent->phase != PHASE_NONE && points->trial_id == agent->trial_id;
     agent_watch_frame(agent, points, ours);
     if (!ours)
-        return; /* the word about this trial has not come yet; it is repeated */
+        return; /* the message about this trial has not arrived yet; it is repeated */
     if (is_early(agent, points))
         return;
     int before = agent->phase;

@@ -1,4 +1,4 @@
-/* Terms and joints on the terminal. */
+/* Prints terms and joints. */
 #include "found.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-/* found.h: what the agent believes of the object, in words, kept beyond the trial. */
+/* found.h: what the agent knows about the object, as text, kept after the trial. */
 #ifndef GRRL_AGENT_FOUND_H
 #define GRRL_AGENT_FOUND_H
 
@@ -9,25 +9,25 @@ enum {
     GRRL_FOUND_BYTES = 32 * GRRL_FOUND_NODES
 };
 
-/* All zero: nothing is known yet. */
+/* All zero: nothing known yet. */
 struct grrl_found {
     bool known;
     int32_t trial_id;
     int32_t pushes;
-    float sure; /* grrl_agent_sureness, and the pair that it is of: n of fn */
+    float sure; /* grrl_agent_sureness and its pair: n of fn */
     unsigned pair[2];
     char term[GRRL_FOUND_BYTES];
     struct grrl_model model;
 };
 
-/* Takes over what the agent's learner believes; on GRRL_AGENT_PERCEIVED. */
+/* Copies the learner's estimate; call on GRRL_AGENT_PERCEIVED. */
 void grrl_found_take(struct grrl_found *found, const struct grrl_agent *agent,
                      const struct grrl_agent_event *event);
 
-/* One line: the term and what it leaves open. */
+/* Prints one line: the term and its least certain pair. */
 void grrl_found_print_line(const struct grrl_found *found);
 
-/* The term and a line for each joint. */
+/* Prints the term and a line for each joint. */
 void grrl_found_print(const struct grrl_found *found);
 
 #endif

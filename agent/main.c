@@ -1,4 +1,4 @@
-/* grrl-agent: options, files and lines on the terminal around the agent's core. */
+/* grrl-agent: options, files and terminal output around the agent's core. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 #include "process.h"
 #include "store_file.h"
 
-static struct grrl_agent agent; /* large, and there is one */
+static struct grrl_agent agent; /* large, and there is only one */
 
 /* Beyond EXIT_FAILURE and the 2 of a wrong command line. */
 enum { EXIT_STOPPED = 3 };
@@ -19,8 +19,8 @@ struct run {
     struct grrl_agent_options options;
     struct grrl_found found;
     bool failed;
-    int32_t trials; /* that count */
-    int64_t pushes; /* in them */
+    int32_t trials; /* not counting aborted ones */
+    int64_t pushes; /* in these trials */
 };
 
 static void save(struct run *run)
@@ -29,7 +29,7 @@ static void save(struct run *run)
     if (run->options.store == NULL ||
         grrl_store_file_save(&grrl_file_calls_posix, run->options.store, &agent.learner, &report))
         return;
-    (void)fprintf(stderr, "grrl-agent: cannot save the experiences: %s\n", report.text);
+    (void)fprintf(stderr, "grrl-agent: cannot save what was learned: %s\n", report.text);
     run->failed = true;
 }
 
@@ -53,7 +53,7 @@ static void explain(const grrl_decision_t *decision)
 
 static void end_of_trial(struct run *run, const struct grrl_agent_event *event)
 {
-    if (event->trial_id == 0) { /* nobody judged: how it ended, the end of the run tells */
+    if (event->trial_id == 0) { /* nobody judged; the end of the run reports how it ended */
         save(run);
         return;
     }
@@ -92,7 +92,7 @@ static void on_event(void *context, const struct grrl_agent_event *event)
             explain(event->decision);
         break;
     case GRRL_AGENT_LEARNED:
-        if (event->trial_id == 0) /* without a supervisor there is no end of a trial to save at */
+        if (event->trial_id == 0) /* without a supervisor, no trial ends at which to save */
             save(run);
         break;
     case GRRL_AGENT_TRIAL_END:
@@ -102,7 +102,7 @@ static void on_event(void *context, const struct grrl_agent_event *event)
     (void)fflush(stdout);
 }
 
-/* Until the trials are over, the log ends, a signal comes or LCM fails. */
+/* Runs until the trials are over, the log ends, a signal arrives or LCM fails. */
 static void loop(struct run *run, lcm_t *lcm)
 {
     struct grrl_process_watch watch = {.program = "grrl-agent",
@@ -112,7 +112,7 @@ static void loop(struct run *run, lcm_t *lcm)
     while (!grrl_process_stopped() && !run->failed && !grrl_agent_finished(&agent)) {
         if (lcm_handle_timeout(lcm, GRRL_PROCESS_POLL_MS) < 0 && !grrl_process_stopped()) {
             if (!from_log) {
-                (void)fprintf(stderr, "grrl-agent: LCM fails to receive\n");
+                (void)fprintf(stderr, "grrl-agent: LCM failed to receive\n");
                 run->failed = true;
             }
             break;
@@ -135,22 +135,21 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
         return true;
     enum grrl_store_result result =
         grrl_store_file_load(&grrl_file_calls_posix, run->options.store, &agent.learner, &report);
-    if (result != GRRL_STORE_LOADED) /* --quiet does not silence what was lost */
+    if (result != GRRL_STORE_LOADED) /* --quiet does not silence losses */
         (void)fprintf(stderr, "grrl-agent: %s\n", report.text);
     if (result == GRRL_STORE_REFUSED)
         return false;
-    save(run); /* the same again: where it cannot be written, that shows before anything is learned
-                */
+    save(run); /* shows before learning whether the file can be written */
     return !run->failed;
 }
 
-/* What the run came to, and what the tracker and the robot did wrong. */
+/* Reports the result of the run, and the mistakes of the tracker and the robot. */
 static void tell_end(struct run *run)
 {
     const double wanted = (double)run->options.until_sure;
     enum grrl_agent_end end = grrl_agent_end(&agent);
     bool unsure = end == GRRL_AGENT_PUSHES_DONE && wanted > 0.0;
-    if (unsure) /* not what was asked for */
+    if (unsure) /* the request was not met */
         (void)fprintf(stderr,
                       "grrl-agent: not sure after %" PRId32 " pushes: a pair of links is decided "
                       "with probability %.3f, --until-sure %g\n",
@@ -159,7 +158,7 @@ static void tell_end(struct run *run)
     if (run->options.quiet)
         return;
     if (end == GRRL_AGENT_SURE)
-        (void)printf("sure: every pair of links is decided with probability %.3f or more\n",
+        (void)printf("sure: every pair of links is decided with a probability of at least %.3f\n",
                      (double)run->found.sure);
     if (run->found.trial_id == 0)
         grrl_found_print(&run->found);
@@ -191,7 +190,7 @@ static int run_agent(struct run *run)
     void *memory = calloc(1, bytes + 1);
     if (memory == NULL || grrl_policy_make(type, memory, bytes, run->options.experiences,
                                            run->options.policy_config, &config.policy) != GRRL_OK) {
-        (void)fprintf(stderr, "grrl-agent: there is no memory for %" PRIu32 " %s\n",
+        (void)fprintf(stderr, "grrl-agent: not enough memory for %" PRIu32 " %s\n",
                       run->options.experiences, type->entries);
         free(memory);
         return EXIT_FAILURE;

@@ -9,9 +9,9 @@ enum { MAX_PARAMETERS = 32, N_LIMITS = 6, HELP_BYTES = 160 };
 static const struct grrl_program program = {
     .name = "grrl-agent",
     .usage = "grrl-agent [OPTION]...",
-    .intro = "Learns to find out how articulated objects move by pushing them.\n"
+    .intro = "Learns to discover how articulated objects move by pushing them.\n"
              "Waits for feature points on LCM; grrl-sim sends some.\n",
-    .outro = "Without --lcm-url the environment variable LCM_DEFAULT_URL counts.\n"
+    .outro = "Without --lcm-url it uses the environment variable LCM_DEFAULT_URL.\n"
              "Exit status: 0 all trials done, sure (--until-sure), all --pushes done, log read or\n"
              "stopped by a signal; 1 failed, or --pushes done and not sure; 2 wrong command line;\n"
              "3 stopped by GRRL_STOP.\n",
@@ -23,7 +23,7 @@ union configuration {
     unsigned char bytes[GRRL_POLICY_CONFIG_BYTES];
 };
 
-/* A parameter of a policy, and what the user gave for it. */
+/* A parameter of a policy, and the value that the user gave. */
 struct given {
     const struct grrl_policy_type *policy;
     const struct grrl_parameter *parameter;
@@ -73,7 +73,8 @@ static size_t add_parameters(struct given *given, struct grrl_option *rows)
     return n;
 }
 
-/* "one of learn (..), paper (..)", or with a line for each, for --help */
+/* Lists the policies in one line for an error message, or one per line with their texts for --help.
+ */
 static void list_policies(const char *before, const char *between, bool with_text, char *to,
                           size_t capacity)
 {
@@ -133,7 +134,7 @@ static const char *take_table(void *context, const char *text)
     return NULL;
 }
 
-/* What a push may be, as the robot's builder gives it; 0: the default. */
+/* The limits of a push on the command line; 0: the default. */
 struct limits {
     double force_n;
     double speed_m_s;
@@ -141,7 +142,7 @@ struct limits {
     double until_sure;
 };
 
-/* The timeout leaves as long a way to the first contact at another speed as the default does. */
+/* The timeout allows the same distance to the first contact as the default, whatever the speed. */
 static void take_limits(const struct limits *limits, struct grrl_agent_options *options)
 {
     struct grrl_grounding_config *push = &options->learner.grounding;
@@ -157,18 +158,18 @@ static void take_limits(const struct limits *limits, struct grrl_agent_options *
     options->until_sure = (float)limits->until_sure;
 }
 
-/* Rows of what concerns pushes; returns how many. */
+/* Adds the rows of the push options; returns how many. */
 static size_t add_limits(struct limits *limits, struct grrl_agent_options *options,
                          struct grrl_option *rows)
 {
     const struct grrl_option own[N_LIMITS] = {
         grrl_option_call("table", "X0,Y0,X1,Y1",
-                         "refuse points and pushes beside this rectangle, metres; needed where\n"
-                         "points span more than 2 m",
+                         "refuse points and pushes outside this rectangle, metres; needed "
+                         "if\npoints span more than 2 m",
                          take_table, &options->table),
         grrl_option_number("force", "N", "push with at most N newtons, 0.1 to 100 (10)", 0.1, 100.0,
                            1.0, &limits->force_n),
-        grrl_option_number("speed", "V", "push at V metres a second, 0.005 to 0.5 (0.08)", 0.005,
+        grrl_option_number("speed", "V", "push at V metres per second, 0.005 to 0.5 (0.08)", 0.005,
                            0.5, 1.0, &limits->speed_m_s),
         grrl_option_number("travel", "MM",
                            "push on for MM millimetres after the first contact, 5 to 200 (30)", 5.0,
@@ -191,7 +192,7 @@ static bool pushes_itself(const struct grrl_agent_options *options, const struct
            limits->travel_m > 0.0;
 }
 
-/* Makes the policy's configuration from what was given; RUN if it fits the policy. */
+/* Builds the policy's configuration from the given parameters; RUN if they belong to the policy. */
 static enum grrl_options_result configure(const struct given *given, size_t n,
                                           struct grrl_agent_options *options)
 {
@@ -204,8 +205,8 @@ static enum grrl_options_result configure(const struct given *given, size_t n,
     }
     for (size_t i = 0; i < n; i++) {
         if (given[i].is_given && given[i].policy != policy) {
-            (void)snprintf(what, sizeof what, "--%s goes with --policy %s",
-                           given[i].parameter->name, given[i].policy->name);
+            (void)snprintf(what, sizeof what, "--%s needs --policy %s", given[i].parameter->name,
+                           given[i].policy->name);
             return grrl_options_wrong(&program, what);
         }
         if (given[i].is_given)
@@ -245,8 +246,8 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
         grrl_option_flag("observe", "learn from another agent's pushes, live or from a log",
                          &options->observe),
         grrl_option_number("tracker-timeout", "S",
-                           "give up when nothing is heard for S seconds (wait for ever)", 0.1, 1e6,
-                           1.0, &options->tracker_timeout_s),
+                           "give up after S seconds without messages (wait forever)", 0.1, 1e6, 1.0,
+                           &options->tracker_timeout_s),
         grrl_option_text("lcm-url", "URL", "LCM provider; a log is file://run.lcm?speed=0",
                          &options->lcm_url),
         grrl_option_flag("quiet", "print errors only", &options->quiet),

@@ -13,11 +13,11 @@
 struct grrl_agent_options {
     struct grrl_learner_config learner;
     const struct grrl_policy_type *policy;
-    void *policy_config; /* of the policy, or NULL: it has none */
-    const char *store;   /* NULL: experiences are not kept */
+    void *policy_config; /* of the policy; NULL: it has none */
+    const char *store;   /* NULL: nothing is kept */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;
-    double tracker_timeout_s; /* 0: wait for ever */
+    double tracker_timeout_s; /* 0: wait forever */
     struct grrl_agent_table table;
     int pushes;       /* 0: no end */
     float until_sure; /* 0: never */
@@ -26,7 +26,7 @@ struct grrl_agent_options {
     bool explain;
 };
 
-/* Prints help or version to stdout (DONE), or what is wrong to stderr (BAD). */
+/* Prints help or the version to stdout (DONE), or an error message to stderr (BAD). */
 enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
                                                   struct grrl_agent_options *options);
 

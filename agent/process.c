@@ -93,9 +93,9 @@ lcm_t *grrl_process_open_lcm(const char *program, const char *url)
     if (lcm != NULL && lcm_get_fileno(lcm) >= 0)
         return lcm;
     (void)fprintf(stderr,
-                  "%s: LCM does not start. If this machine has no network:\n"
+                  "%s: cannot start LCM. If this machine has no network:\n"
                   "  ip link set lo up; ip route add 224.0.0.0/4 dev lo\n"
-                  "or name another provider with --lcm-url.\n",
+                  "or choose another provider with --lcm-url.\n",
                   program);
     if (lcm != NULL)
         lcm_destroy(lcm);

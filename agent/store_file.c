@@ -105,7 +105,7 @@ static bool flush(struct stream *stream)
     return stream->error == 0;
 }
 
-/* False at the end of the file, too. */
+/* Also false at the end of the file. */
 static bool fill(struct stream *stream)
 {
     const struct grrl_file_calls *calls = stream->calls;
@@ -162,7 +162,7 @@ static bool fail(struct grrl_store_report *report, const char *path, const char 
     return false;
 }
 
-/* Makes a change of names survive a power failure. */
+/* Makes a rename survive a power failure. */
 static bool sync_folder(const struct grrl_file_calls *calls, const char *path)
 {
     char folder[PATH_BYTES];
@@ -202,7 +202,7 @@ bool grrl_store_file_save(const struct grrl_file_calls *calls, const char *path,
     int length = snprintf(temporary, sizeof temporary, "%s.new", path);
     if (length < 0 || (size_t)length >= sizeof temporary)
         return fail(report, path, "the name is too long");
-    /* The new file is on the disk before it takes the name of the old one. */
+    /* The new file is on disk before it replaces the old one. */
     if (!write_file(calls, temporary, learner) ||
         calls->rename(calls->context, temporary, path) != 0) {
         int reason = errno;
@@ -216,25 +216,24 @@ bool grrl_store_file_save(const struct grrl_file_calls *calls, const char *path,
 
 /* --- loading ---------------------------------------------------------------------------------- */
 
-/* What to do about a file that is left alone. */
+/* Advice about a file that is left alone. */
 static const char *advice(enum grrl_status status)
 {
     switch (status) {
     case GRRL_ERR_FULL:
         return "it holds more than fits: raise --experiences";
     case GRRL_ERR_FORMAT:
-        return "this is no store of experience; name another file with --store";
+        return "this is not a store; name another file with --store";
     case GRRL_ERR_POLICY:
-        return "another policy learned it; choose that one with --policy, or name another file "
-               "with "
-               "--store";
+        return "it belongs to another policy; choose that one with --policy, or name another file "
+               "with --store";
     default:
         return "written by another version or with other limits; use the program that wrote it, or "
                "name another file with --store";
     }
 }
 
-/* Finds a name that nothing has, by creating an empty file of it. */
+/* Finds an unused name by creating an empty file with it. */
 static bool reserve_name(const struct grrl_file_calls *calls, const char *path, char *aside)
 {
     for (int i = 1; i <= MAX_ASIDE; i++) {
@@ -261,28 +260,28 @@ static enum grrl_store_result set_aside(const struct grrl_file_calls *calls, con
     if (!reserve_name(calls, path, aside) || calls->rename(calls->context, path, aside) != 0 ||
         !sync_folder(calls, path)) {
         (void)snprintf(report->text, sizeof report->text,
-                       "%.300s: %s; it cannot be set aside (%s): move it away to start without it",
+                       "%.300s: %s; it cannot be renamed (%s): move it away to start without it",
                        path, what, strerror(errno));
         return GRRL_STORE_REFUSED;
     }
     (void)snprintf(report->text, sizeof report->text,
-                   "%.300s: %s; it is now %.300s. To go on with a copy of yours instead, stop, put "
-                   "it at the old name and start again",
+                   "%.300s: %s; it is now %.300s. To use a backup instead, stop, copy it to the "
+                   "old name and start again",
                    path, what, aside);
     return GRRL_STORE_SET_ASIDE;
 }
 
-/* Tells a torn end from damage elsewhere. */
+/* Describes a torn end or damage elsewhere. */
 static void describe_damage(enum grrl_status status, uint32_t kept, uint32_t lost, char *what,
                             size_t capacity)
 {
     if (status == GRRL_ERR_IO)
-        (void)snprintf(what, capacity,
-                       "the file ends early, %lu entries before the cut are kept, at least %lu "
-                       "are lost",
-                       (unsigned long)kept, (unsigned long)lost);
+        (void)snprintf(
+            what, capacity,
+            "the file ends early; %lu entries before the end are kept, at least %lu are lost",
+            (unsigned long)kept, (unsigned long)lost);
     else
-        (void)snprintf(what, capacity, "the file is damaged, nothing of it is used");
+        (void)snprintf(what, capacity, "the file is damaged; nothing of it is used");
 }
 
 static enum grrl_status read_file(struct stream *stream, struct grrl_learner *learner,
@@ -292,7 +291,7 @@ static enum grrl_status read_file(struct stream *stream, struct grrl_learner *le
     struct grrl_io io = {.context = stream, .read = read_bytes};
     enum grrl_status status = grrl_learner_load_torn(learner, &io, lost);
     if (status == GRRL_OK && read_bytes(stream, &more, 1) == 0)
-        return GRRL_ERR_CORRUPT; /* save writes nothing behind the last record */
+        return GRRL_ERR_CORRUPT; /* save writes nothing after the last record */
     return status;
 }
 

@@ -1,12 +1,11 @@
 /*
- * store_file.h: experiences in a file.
+ * store_file.h: loads and saves what was learned.
  *
- * Saving is atomic: whenever the power goes, the file holds the old experiences or the new ones,
- * whole. A file that is damaged all the same is set aside under another name, FILE.damaged, never
- * overwritten: nothing is lost that was still there. A file that is something else, of another
- * version or too large for the memory is left alone.
+ * Saving is atomic: whenever the power fails, the file is entirely old or entirely new. If a file
+ * is damaged anyway, it is renamed to FILE.damaged and never overwritten, so nothing more is lost.
+ * A file of another kind or version, or too large for the memory, is left alone.
  *
- * All system calls go through a table, so that a test can cut the power at each of them.
+ * All system calls go through a table, so that a test can simulate a power failure at each of them.
  */
 #ifndef GRRL_STORE_FILE_H
 #define GRRL_STORE_FILE_H
@@ -18,7 +17,7 @@
 
 GRRL_API_BEGIN
 
-/* As POSIX has them, with -1 and errno for a failure. */
+/* As in POSIX, with -1 and errno on failure. */
 struct grrl_file_calls {
     void *context;
     int (*open)(void *context, const char *path, int flags);
@@ -30,17 +29,17 @@ struct grrl_file_calls {
     int (*remove)(void *context, const char *path);
 };
 
-/* The system's own. */
+/* The real system calls. */
 extern const struct grrl_file_calls grrl_file_calls_posix;
 
 enum grrl_store_result {
-    GRRL_STORE_LOADED,    /* also where there is no file yet: a learner without experience */
-    GRRL_STORE_SET_ASIDE, /* damaged: the learner knows what was whole before a torn end, or
+    GRRL_STORE_LOADED,    /* also if there is no file yet: the learner starts empty */
+    GRRL_STORE_SET_ASIDE, /* damaged: the learner has the complete entries before a torn end, or
                              nothing; the report says what was kept and where the file is now */
-    GRRL_STORE_REFUSED    /* the file is as it was, the learner knows nothing */
+    GRRL_STORE_REFUSED    /* the file is unchanged and the learner is empty */
 };
 
-/* What happened, for the user, in English; empty when all is well. */
+/* A message for the user in English; empty on success. */
 struct grrl_store_report {
     char text[1024];
 };
@@ -50,8 +49,8 @@ GRRL_MUST_USE enum grrl_store_result grrl_store_file_load(const struct grrl_file
                                                           struct grrl_learner *learner,
                                                           struct grrl_store_report *report);
 
-/* After a failure the file holds what it held before; or what was to be saved, when all but the
- * last sync, of the folder, went well. */
+/* After a failure the file is unchanged; or it has the new content, if only the final sync of the
+ * folder failed. */
 GRRL_MUST_USE bool grrl_store_file_save(const struct grrl_file_calls *calls, const char *path,
                                         const struct grrl_learner *learner,
                                         struct grrl_store_report *report);

@@ -50,6 +50,7 @@ extern const struct bench_peer bench_igraph;
 #endif
 #ifdef GRRL_BENCH_NAUTY
 extern const struct bench_peer bench_nauty;
+extern const struct bench_peer bench_nauty_kept; /* canonical forms made when building */
 #endif
 
 #ifdef GRRL_BENCH_NETWORKX

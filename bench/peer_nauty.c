@@ -1,7 +1,8 @@
 /*
  * nauty: canonical forms by densenauty, isomorphism only. Joint types become two layers per link:
  * revolute joints in the first, prismatic ones in the second, with a link's two layers connected
- * (the nauty manual's method for coloured edges). Every query canonises both graphs.
+ * (the nauty manual's method for coloured edges). Every query canonises both graphs; of the peer
+ * `nauty kept`, building does, and a query compares the forms.
  */
 #include <nauty/nauty.h>
 #include <stdlib.h>
@@ -90,4 +91,33 @@ static int match(enum grrl_match_kind kind, const void *pattern, const void *tar
            memcmp(form[0], form[1], 2 * n * WORDS * sizeof(graph)) == 0;
 }
 
+struct kept {
+    int n;
+    graph form[MOST * WORDS];
+    grrl_label labels[GRRL_MAX_LINKS];
+};
+
+static void *build_kept(const struct grrl_graph *from)
+{
+    struct layered *layered = build(from);
+    struct kept *kept = calloc(1, sizeof *kept);
+    if (kept == NULL)
+        abort();
+    kept->n = from->n;
+    canonise(layered, kept->form, kept->labels);
+    free(layered);
+    return kept;
+}
+
+static int match_kept(enum grrl_match_kind kind, const void *pattern, const void *target)
+{
+    const struct kept *a = pattern;
+    const struct kept *b = target;
+    if (kind != GRRL_MATCH_ISOMORPHISM)
+        return -1;
+    return a->n == b->n && memcmp(a->labels, b->labels, (size_t)a->n * sizeof a->labels[0]) == 0 &&
+           memcmp(a->form, b->form, 2 * (size_t)a->n * WORDS * sizeof(graph)) == 0;
+}
+
 const struct bench_peer bench_nauty = {"nauty", build, destroy, match};
+const struct bench_peer bench_nauty_kept = {"nauty kept", build_kept, destroy, match_kept};

@@ -77,8 +77,9 @@ void add_paper(std::vector<Policy> &table)
 void add_learn(std::vector<Policy> &table)
 {
     static const char *const parts[GRRL_CONTEXT_PARTS] = {
-        "direction", "length",    "tried",        "neighbours", "neighbour-length",
-        "revolute",  "prismatic", "others-tried", "longer"};
+        "direction",        "length",   "tried",     "neighbours",
+        "neighbour-length", "revolute", "prismatic", "others-tried",
+        "longer",           "aspect",   "skew"};
     table.push_back(variant(
         "learn", "exact", "only cases with exactly the same context count",
         [](grrl_learner_config &, void *c) { cases(c).mismatch = 0.0f; }));
@@ -88,9 +89,14 @@ void add_learn(std::vector<Policy> &table)
     table.push_back(variant(
         "learn", "no-doubt", "older rewards keep their weight, whatever the trial reveals",
         [](grrl_learner_config &, void *c) { cases(c).confidence = GRRL_MAX_REWARD; }));
-    table.push_back(variant("learn", "no-present",
-                            "rewards of the current trial get no extra weight",
-                            [](grrl_learner_config &, void *c) { cases(c).present = 0.0f; }));
+    table.push_back(variant(
+        "learn", "no-present", "rewards of the current trial get no extra weight",
+        [](grrl_learner_config &, void *c) { cases(c).present = 0.0f; }));
+    table.push_back(variant(
+        "learn", "no-general", "no memory of what all objects have in common",
+        [](grrl_learner_config &, void *c) { cases(c).general = 0.0f; }));
+    table.push_back(variant("learn", "repeats", "may repeat a push while its link stays the same",
+                            [](grrl_learner_config &, void *c) { cases(c).repeats = 1; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         table.push_back(variant("learn", std::string("no-") + parts[i],
                                 std::string("ignores a part of the context: ") + parts[i],

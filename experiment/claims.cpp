@@ -85,8 +85,11 @@ std::string claims_table(const Plan &plan, const std::vector<Experiments> &resul
     constexpr size_t width = 15;
     std::vector<Row> rows;
     size_t name_width = 6;
+    size_t orders = 0;
+    for (const Policy &policy : policies())
+        orders += policy.is_rule ? 1 : 0;
     for (const Row &row : rows_of(plan, results))
-        if (!row.random.empty() && !row.rules.empty() && !row.learn.empty()) {
+        if (!row.random.empty() && row.rules.size() == orders && !row.learn.empty()) {
             rows.push_back(row);
             name_width = std::max(name_width, row.object.size());
         }

@@ -17,7 +17,7 @@
 namespace grrl_experiment
 {
 
-/* A line for each object and world that has learn, a rule and random; empty if none has. */
+/* A line for each object and world that has learn, all rules and random; empty if none has. */
 std::string claims_table(const Plan &plan, const std::vector<Experiments> &results);
 
 /* "yes", "NO" or "unclear": whether each is below all of the others. */

@@ -47,6 +47,27 @@ void write_file(const std::string &path, const std::string &text)
         fail(path);
 }
 
+bool write_outputs(const char *program, const std::string &csv,
+                   const std::function<void(std::FILE *)> &print, const std::string &svg,
+                   const std::function<bool()> &draw)
+{
+    std::FILE *file = csv.empty() ? nullptr : std::fopen(csv.c_str(), "w");
+    bool written = csv.empty() || file != nullptr;
+    if (file != nullptr) {
+        print(file);
+        written = std::ferror(file) == 0;
+        written = std::fclose(file) == 0 && written;
+    }
+    if (!written)
+        (void)std::fprintf(stderr, "%s: %s: %s\n", program, csv.c_str(), std::strerror(errno));
+    bool drawn = svg.empty() || draw();
+    if (!drawn)
+        (void)std::fprintf(
+            stderr, "%s: %s: gnuplot failed; is it installed, and can the file be written?\n",
+            program, svg.c_str());
+    return written && drawn;
+}
+
 void make_folder(const std::string &path)
 {
     std::error_code error;

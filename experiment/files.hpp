@@ -3,6 +3,8 @@
 #ifndef GRRL_EXPERIMENT_FILES_HPP
 #define GRRL_EXPERIMENT_FILES_HPP
 
+#include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -14,6 +16,12 @@ std::optional<std::string> read_file(const std::string &path);
 
 /* Throws std::runtime_error. */
 void write_file(const std::string &path, const std::string &text);
+
+/* Writes a CSV file by `print` and a picture by `draw`, each unless its path is empty. Reports
+ * errors on standard error; false if there was one. */
+bool write_outputs(const char *program, const std::string &csv,
+                   const std::function<void(std::FILE *)> &print, const std::string &svg,
+                   const std::function<bool()> &draw);
 
 /* Creates a folder and its parents. Throws std::runtime_error. */
 void make_folder(const std::string &path);

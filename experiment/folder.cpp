@@ -154,4 +154,11 @@ void Folder::save(const Curve &curve, uint64_t seed, const Trials &trials) const
     write_file(experiment_path(curve, seed), text.str());
 }
 
+void Folder::save_store(const Curve &curve, uint64_t seed, const std::vector<uint8_t> &bytes) const
+{
+    std::string path = experiment_path(curve, seed);
+    path.replace(path.rfind(".csv"), 4, ".store");
+    write_file(path, std::string(bytes.begin(), bytes.end()));
+}
+
 } // namespace grrl_experiment

@@ -11,6 +11,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "options.hpp"
 #include "plan.hpp"
@@ -37,6 +38,9 @@ public:
     /* Returns nullopt if the experiment with this seed is not finished. */
     std::optional<Trials> load(const Curve &curve, uint64_t seed) const;
     void save(const Curve &curve, uint64_t seed, const Trials &trials) const;
+
+    /* Keeps what a policy knew in the end, in a file that grrl-agent --store takes. */
+    void save_store(const Curve &curve, uint64_t seed, const std::vector<uint8_t> &bytes) const;
 
     /* Copies the experiments of another folder. Throws if it was made with other settings. */
     void take(const std::string &other) const;

@@ -48,12 +48,14 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     phase.trials = curve.trials();
     phase.seed = task.seed;
     Trials trials;
-    (void)run_phase(options.transport, phase, experience, [&](const TrialRow &row) {
+    experience = run_phase(options.transport, phase, experience, [&](const TrialRow &row) {
         trials.push_back(row);
         report(row.pushes);
     });
     if (static_cast<int>(trials.size()) != curve.trials())
         throw std::runtime_error("trials are missing");
+    if (!experience.empty())
+        folder.save_store(curve, task.seed, experience);
     folder.save(curve, task.seed, trials);
 }
 

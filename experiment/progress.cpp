@@ -2,9 +2,13 @@
 #include "progress.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 #include <unistd.h>
 
@@ -84,6 +88,34 @@ void Progress::finish()
     print();
     if (terminal_)
         (void)std::fputc('\n', stderr);
+}
+
+void run_parallel(size_t n, int jobs, bool quiet, const char *name_of_parts,
+                  const std::function<int(size_t)> &one)
+{
+    Progress progress(static_cast<int64_t>(n), static_cast<int64_t>(n), name_of_parts);
+    std::mutex mutex; /* of progress */
+    std::atomic<size_t> next{0};
+    auto work = [&] {
+        for (size_t i = next++; i < n; i = next++) {
+            int pushes = one(i);
+            std::lock_guard<std::mutex> lock(mutex);
+            if (pushes < 0)
+                next = n;
+            progress.trial(std::max(pushes, 0));
+            progress.part();
+            if (!quiet)
+                progress.show();
+        }
+    };
+    std::vector<std::thread> threads;
+    for (int i = 1; i < jobs; i++)
+        threads.emplace_back(work);
+    work();
+    for (std::thread &thread : threads)
+        thread.join();
+    if (!quiet)
+        progress.finish();
 }
 
 } // namespace grrl_experiment

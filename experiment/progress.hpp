@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace grrl_experiment
@@ -38,6 +39,11 @@ private:
     double shown_s_ = 0.0;
     std::chrono::steady_clock::time_point start_;
 };
+
+/* Calls one(i) for each i below n, in as many threads as there are jobs, and shows progress unless
+ * quiet. `one` returns the pushes to count, or -1 to stop before further calls. */
+void run_parallel(size_t n, int jobs, bool quiet, const char *name_of_parts,
+                  const std::function<int(size_t)> &one);
 
 } // namespace grrl_experiment
 

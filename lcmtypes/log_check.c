@@ -10,20 +10,13 @@
 #include <sys/stat.h>
 #include <sys/types.h>
 
-#define MAGIC UINT32_C(0xeda1da01)
-
 /* After the magic: number and time of the event, 8 bytes each, then the two lengths. */
-enum { HEADER_BYTES = 24, CHANNEL_LENGTH_AT = 16, DATA_LENGTH_AT = 20, MAX_CHANNEL = 1000 };
+enum { HEADER_BYTES = 24, CHANNEL_LENGTH_AT = 16, DATA_LENGTH_AT = 20 };
 
 static bool fail(struct grrl_log_why *why, const char *path, const char *what)
 {
     (void)snprintf(why->text, sizeof why->text, "%.300s: %s", path, what);
     return false;
-}
-
-static uint32_t number_at(const uint8_t *bytes)
-{
-    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
 /* Skips past the next magic, as the reader does; false if there is none. */
@@ -33,7 +26,7 @@ static bool find_event(FILE *file)
     int byte;
     while ((byte = getc(file)) != EOF) {
         last = last << 8 | (uint32_t)byte;
-        if (last == MAGIC)
+        if (last == GRRL_LOG_SYNC)
             return true;
     }
     return false;
@@ -46,9 +39,9 @@ static bool check_events(FILE *file, const char *path, struct grrl_log_why *why)
         off_t at = ftello(file);
         if (fread(header, 1, sizeof header, file) != sizeof header)
             break;
-        uint32_t channel = number_at(header + CHANNEL_LENGTH_AT);
-        uint32_t data = number_at(header + DATA_LENGTH_AT);
-        if (channel == 0 || channel >= MAX_CHANNEL || data > INT32_MAX) {
+        uint32_t channel = grrl_log_number(header + CHANNEL_LENGTH_AT);
+        uint32_t data = grrl_log_number(header + DATA_LENGTH_AT);
+        if (channel == 0 || channel >= GRRL_LOG_MAX_CHANNEL || data > INT32_MAX) {
             /* The reader rejects it and resumes its search after the magic, so this
              * does the same. */
             if (fseeko(file, at, SEEK_SET) != 0)

@@ -10,12 +10,22 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "grrl/base/api.h"
 
 GRRL_API_BEGIN
 
-enum { GRRL_LOG_MAX_EVENT = 64 * 1024 * 1024 /* bytes per message */ };
+/* Begins each event. */
+#define GRRL_LOG_SYNC UINT32_C(0xeda1da01)
+
+enum { GRRL_LOG_MAX_EVENT = 64 * 1024 * 1024 /* bytes per message */, GRRL_LOG_MAX_CHANNEL = 1000 };
+
+/* A number of 4 bytes in a log, most significant first. */
+static inline uint32_t grrl_log_number(const uint8_t *bytes)
+{
+    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
+}
 
 struct grrl_log_why {
     char text[512];

@@ -19,6 +19,9 @@
 #define SIZE_CHANGE 0.05
 
 /* No table is this wide, in metres. */
+/* Points that move with no body are told from here on. */
+enum { LEAST_STRAYS = 2 };
+
 #define LARGE_WORLD_M 20.0
 
 /* --- the input -------------------------------------------------------------------------------- */
@@ -131,7 +134,31 @@ void grrl_doubt_unit(const struct grrl_tracks *tracks, const struct grrl_report 
                   extent);
 }
 
+/* --- the camera ------------------------------------------------------------------------------- */
+
+void grrl_doubt_camera(const struct grrl_camera *camera, struct grrl_warnings *warnings)
+{
+    if (camera->zoomed)
+        grrl_warn(warnings, "the whole image grows or shrinks by %.0f%%: undone, as a zoom",
+                  100.0 * (double)camera->zoom);
+    if (camera->tilted)
+        grrl_warn(
+            warnings,
+            "the camera looks at the plane from %.0f degrees aside: undone; lengths are those "
+            "at the centre of the image",
+            (double)camera->tilt_rad * 180.0 / (double)GRRL_PI);
+}
+
 /* --- what was left out ------------------------------------------------------------------------ */
+
+/* Features that moved, but with no body. */
+static unsigned count_strays(const struct grrl_model *model)
+{
+    unsigned n = 0;
+    for (unsigned i = 0; i < model->n_features; i++)
+        n += model->feature_body[i] == GRRL_FEATURE_NONE;
+    return n;
+}
 
 void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *warnings)
 {
@@ -162,6 +189,12 @@ void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *w
     if (report->model->n_bodies == GRRL_MAX_LINKS)
         grrl_warn(warnings, "%d bodies are the limit of this build; there may be more",
                   GRRL_MAX_LINKS);
+    unsigned strays = count_strays(report->model);
+    if (strays >= LEAST_STRAYS)
+        grrl_warn(
+            warnings,
+            "%u points move with no body: links of fewer than %u points, or badly tracked ones",
+            strays, (unsigned)report->perception->config.min_features);
     unsigned least = 2u * report->perception->config.min_features;
     if (report->tracks < least)
         grrl_warn(warnings,

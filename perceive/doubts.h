@@ -2,12 +2,16 @@
 #ifndef GRRL_PERCEIVE_DOUBTS_H
 #define GRRL_PERCEIVE_DOUBTS_H
 
+#include "camera.h"
 #include "report.h"
 #include "tracks.h"
 #include "warnings.h"
 
 /* Lost points of a CSV file; damage and sessions of a log. */
 void grrl_doubt_input(const struct grrl_tracks *tracks, struct grrl_warnings *warnings);
+
+/* What the camera added to the motion, and was undone. */
+void grrl_doubt_camera(const struct grrl_camera *camera, struct grrl_warnings *warnings);
 
 /* Positions, in metres, that suggest a unit other than report->unit; said: the user named the unit.
  */

@@ -13,12 +13,10 @@
 
 #include "log_check.h"
 
-#define SYNC UINT32_C(0xeda1da01)
-
 /* The sync word, then the number and the time of the event (8 bytes each), then two lengths (4
  * bytes each). */
 enum { SYNC_BYTES = 4, NUMBER_AT = 4, CHANNEL_AT = 20, DATA_AT = 24, HEADER_BYTES = 28 };
-enum { MAX_CHANNEL = 1000, BLOCK_BYTES = 65536 };
+enum { BLOCK_BYTES = 65536 };
 
 struct header {
     uint64_t number;
@@ -31,11 +29,6 @@ static bool fail(const struct grrl_log_reader *reader, struct grrl_tracks_error 
 {
     (void)snprintf(error->text, sizeof error->text, "%.300s: %s", reader->path, what);
     return false;
-}
-
-static uint32_t number_at(const uint8_t *bytes)
-{
-    return (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
 bool grrl_log_open(struct grrl_log_reader *reader, const char *path,
@@ -85,7 +78,7 @@ static bool is_sync(const struct grrl_log_reader *reader, int64_t at)
 {
     uint8_t bytes[SYNC_BYTES] = {0xed, 0xa1, 0xda, 0x01};
     size_t n = reader->size - at < SYNC_BYTES ? (size_t)(reader->size - at) : SYNC_BYTES;
-    return read_at(reader, at, n, bytes) && number_at(bytes) == SYNC;
+    return read_at(reader, at, n, bytes) && grrl_log_number(bytes) == GRRL_LOG_SYNC;
 }
 
 /* Whether an intact event begins at `at`: another one, or the end of the log, must follow it. */
@@ -94,14 +87,14 @@ static bool event_at(const struct grrl_log_reader *reader, int64_t at, struct he
     uint8_t bytes[HEADER_BYTES];
     if (reader->size - at < HEADER_BYTES || !read_at(reader, at, HEADER_BYTES, bytes))
         return false;
-    uint32_t channel = number_at(bytes + CHANNEL_AT);
-    uint32_t data = number_at(bytes + DATA_AT);
+    uint32_t channel = grrl_log_number(bytes + CHANNEL_AT);
+    uint32_t data = grrl_log_number(bytes + DATA_AT);
     int64_t end = at + HEADER_BYTES + (int64_t)channel + (int64_t)data;
-    if (number_at(bytes) != SYNC || channel == 0 || channel >= MAX_CHANNEL ||
-        data > GRRL_LOG_MAX_EVENT || end > reader->size)
+    if (grrl_log_number(bytes) != GRRL_LOG_SYNC || channel == 0 ||
+        channel >= GRRL_LOG_MAX_CHANNEL || data > GRRL_LOG_MAX_EVENT || end > reader->size)
         return false;
-    *header = (struct header){(uint64_t)number_at(bytes + NUMBER_AT) << 32 |
-                                  number_at(bytes + NUMBER_AT + 4),
+    *header = (struct header){(uint64_t)grrl_log_number(bytes + NUMBER_AT) << 32 |
+                                  grrl_log_number(bytes + NUMBER_AT + 4),
                               channel, data};
     return is_sync(reader, end);
 }
@@ -116,7 +109,8 @@ static int64_t find_event(const struct grrl_log_reader *reader, int64_t from)
         if (!read_at(reader, from, n, block))
             break;
         for (size_t i = 0; i + SYNC_BYTES <= n; i++)
-            if (number_at(block + i) == SYNC && event_at(reader, from + (int64_t)i, &header))
+            if (grrl_log_number(block + i) == GRRL_LOG_SYNC &&
+                event_at(reader, from + (int64_t)i, &header))
                 return from + (int64_t)i;
         from += (int64_t)(n - SYNC_BYTES + 1); /* a sync word may straddle two blocks */
     }

@@ -122,15 +122,14 @@ static bool write_motion(const char *path, const struct grrl_report *report)
     return close_output(file, path) && good;
 }
 
-static int write_report(const struct grrl_perceive_options *options,
-                        const struct grrl_report *report)
+static int write_report(const struct grrl_perceive_options *options, const struct grrl_run *run)
 {
-    grrl_warnings_print(stderr, report->warnings);
-    if (options->svg != NULL && !write_svg(options->svg, report))
+    grrl_warnings_print(stderr, run->report.warnings);
+    if (options->svg != NULL && !write_svg(options->svg, &run->report))
         return EXIT_INPUT;
-    if (options->motion != NULL && !write_motion(options->motion, report))
+    if (options->motion != NULL && !write_motion(options->motion, &run->upright))
         return EXIT_INPUT;
-    (options->json ? grrl_report_json : grrl_report_text)(stdout, report);
+    (options->json ? grrl_report_json : grrl_report_text)(stdout, &run->report);
     return close_output(stdout, "standard output") ? EXIT_FINE : EXIT_INPUT;
 }
 
@@ -173,8 +172,8 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
                                      .noise = options->noise,
                                      .noise_from_points = options->noise_from_points};
     enum grrl_run_result result = grrl_run_tracks(&run, &config, &tracks);
-    int status = result == GRRL_RUN_FINE ? write_report(options, &run.report)
-                                         : fail(reason(result, run.status));
+    int status =
+        result == GRRL_RUN_FINE ? write_report(options, &run) : fail(reason(result, run.status));
     grrl_tracks_free(&tracks);
     return status;
 }

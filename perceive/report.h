@@ -35,8 +35,13 @@ struct grrl_report {
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair);
 
-/* Why they are undetermined, in words; empty if they are not. */
-const char *grrl_report_reason(const struct grrl_pair *pair);
+/* Why they are undetermined, in words, and what would tell; empty if they are not. */
+struct grrl_reason_text {
+    char text[160];
+};
+
+struct grrl_reason_text grrl_report_reason(const struct grrl_report *report,
+                                           const struct grrl_pair *pair);
 
 /* The share of points with a position that are not used: lost, outliers, refused, or in tracks left
  * out. */

@@ -77,7 +77,7 @@ static void print_pairs(FILE *file, const struct grrl_report *report)
                           "\"p_disconnected\": %.6g, \"reason\": \"%s\"}",
                           separator, (unsigned)body[a].number, (unsigned)body[b].number, relation,
                           (double)pair.p_revolute, (double)pair.p_prismatic,
-                          (double)pair.p_disconnected, grrl_report_reason(&pair));
+                          (double)pair.p_disconnected, grrl_report_reason(report, &pair).text);
             separator = ",\n";
         }
     }

@@ -80,18 +80,44 @@ const char *grrl_report_relation(const struct grrl_report *report, unsigned a, u
                                                           : "undetermined";
 }
 
-const char *grrl_report_reason(const struct grrl_pair *pair)
+/* How far two bodies moved apart, and what tells a joint. */
+static struct grrl_reason_text too_little(const struct grrl_report *report,
+                                          const struct grrl_pair *pair)
+{
+    const struct grrl_perception_config *config = &report->perception->config;
+    const double degree = 180.0 / (double)GRRL_PI;
+    bool noisy = pair->turned_rad > config->min_turn_rad || pair->slid_m > config->min_slide_m;
+    struct grrl_reason_text reason;
+    (void)snprintf(reason.text, sizeof reason.text,
+                   "%s: turned %.2g of the %.2g degrees, slid %.2g of the %.2g %s needed",
+                   noisy ? "no more relative motion than noise" : "too little relative motion",
+                   (double)pair->turned_rad * degree, (double)config->min_turn_rad * degree,
+                   (double)pair->slid_m * report->per_metre,
+                   (double)config->min_slide_m * report->per_metre, report->unit);
+    return reason;
+}
+
+struct grrl_reason_text grrl_report_reason(const struct grrl_report *report,
+                                           const struct grrl_pair *pair)
 {
     static const char *const words[] = {
         [GRRL_REASON_NONE] = "",
-        [GRRL_REASON_LITTLE] = "too little relative motion",
         [GRRL_REASON_NO_TYPE] = "neither type explains the motion, or both do",
         [GRRL_REASON_UNPROVEN] = "independent motion explains it as well",
         [GRRL_REASON_FAR] = "too far from the joint the motion suggests",
         [GRRL_REASON_SIZES] = "their relative size changes",
         [GRRL_REASON_STRUCTURE] = "other joints leave no room for this one",
     };
-    return pair->reason < sizeof words / sizeof words[0] ? words[pair->reason] : "";
+    struct grrl_reason_text reason = {""};
+    if (pair->reason == GRRL_REASON_LITTLE)
+        return too_little(report, pair);
+    bool slid = pair->p_prismatic > pair->p_revolute;
+    const char *text = pair->reason >= sizeof words / sizeof words[0] ? "" : words[pair->reason];
+    if (pair->reason == GRRL_REASON_UNPROVEN && slid)
+        text = "slid once, which independent motion explains as well; sliding back or turning "
+               "together would tell";
+    (void)snprintf(reason.text, sizeof reason.text, "%s", text);
+    return reason;
 }
 
 static void print_other_pairs(FILE *file, const struct grrl_report *report)
@@ -104,11 +130,12 @@ static void print_other_pairs(FILE *file, const struct grrl_report *report)
             const char *relation = grrl_report_relation(report, a, b, &pair);
             if (pair.relation == GRRL_RELATION_JOINED)
                 continue;
-            (void)fprintf(
-                file, "%s  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)%s%s\n",
-                heading, (unsigned)model->body[a].number, (unsigned)model->body[b].number, relation,
-                (double)pair.p_revolute, (double)pair.p_prismatic, (double)pair.p_disconnected,
-                pair.reason == GRRL_REASON_NONE ? "" : ": ", grrl_report_reason(&pair));
+            (void)fprintf(file,
+                          "%s  f%u f%u %s (revolute %.3f, prismatic %.3f, disconnected %.3f)%s%s\n",
+                          heading, (unsigned)model->body[a].number, (unsigned)model->body[b].number,
+                          relation, (double)pair.p_revolute, (double)pair.p_prismatic,
+                          (double)pair.p_disconnected, pair.reason == GRRL_REASON_NONE ? "" : ": ",
+                          grrl_report_reason(report, &pair).text);
             heading = "";
         }
     }

@@ -75,16 +75,6 @@ static enum grrl_status observe(struct grrl_perception *perception,
     return grrl_perception_update(perception);
 }
 
-/* Whether the size of a body changes too much for the rigid model. */
-static bool sizes_change(const struct grrl_perception *perception)
-{
-    const struct grrl_model *model = grrl_perception_model(perception);
-    for (uint8_t b = 0; b < model->n_bodies; b++)
-        if (grrl_perception_size_change(perception, b) > SIZE_CHANGE)
-            return true;
-    return false;
-}
-
 static unsigned unassigned(const struct grrl_model *model)
 {
     unsigned n = 0;
@@ -93,9 +83,31 @@ static unsigned unassigned(const struct grrl_model *model)
     return n;
 }
 
+/* Whether the size of a body changes by so much that rigid bodies do not hold, or as many points
+ * as make a body are in none. */
+static bool sizes_change(const struct grrl_perception *perception)
+{
+    const struct grrl_model *model = grrl_perception_model(perception);
+    for (uint8_t b = 0; b < model->n_bodies; b++)
+        if (grrl_perception_size_change(perception, b) > SIZE_CHANGE)
+            return true;
+    return unassigned(model) >= perception->config.min_features;
+}
+
+/* Whether bodies that grow explain more than rigid ones: fewer for the points, or more that have
+ * enough points each. */
+static bool explains_more(const struct grrl_model *growing, const struct grrl_model *rigid,
+                          unsigned min_features)
+{
+    int more_bodies = (int)growing->n_bodies - (int)rigid->n_bodies;
+    int more_points = (int)unassigned(rigid) - (int)unassigned(growing);
+    return more_bodies < 0 ? more_points >= 0
+                           : more_points > 0 && more_points >= 2 * (int)min_features * more_bodies;
+}
+
 /*
- * If the camera zooms or something approaches it, a rigid body falls into slices. Tries again with
- * bodies that may grow, and keeps that result if it explains as many points with fewer bodies.
+ * If the camera zooms or something approaches it, a rigid body falls into slices, or points into
+ * none. Tries again with bodies that may grow.
  */
 static void observe_growing(struct grrl_run *run, const struct grrl_perception_config *config,
                             const struct grrl_tracks *tracks)
@@ -109,8 +121,7 @@ static void observe_growing(struct grrl_run *run, const struct grrl_perception_c
     status = status == GRRL_OK ? observe(&run->perception, tracks) : status;
     const struct grrl_model *grown = grrl_perception_model(&run->perception);
     const struct grrl_model *rigid = grrl_perception_model(&run->rigid);
-    if (status != GRRL_OK || grown->n_bodies >= rigid->n_bodies ||
-        unassigned(grown) > unassigned(rigid))
+    if (status != GRRL_OK || !explains_more(grown, rigid, config->min_features))
         run->perception = run->rigid;
 }
 
@@ -166,25 +177,30 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     run->status = print_term(run, model);
     if (run->status != GRRL_OK)
         return GRRL_RUN_FAILED;
-    run->report = (struct grrl_report){.model = model,
-                                       .perception = perception,
-                                       .counts = &perception->counts,
-                                       .recording = tracks,
-                                       .warnings = &run->warnings,
-                                       .term = run->term,
-                                       .unit = scale.name,
-                                       .profile = profile,
-                                       .per_metre = per_metre,
-                                       .noise = (double)perception->config.noise_m * per_metre,
-                                       .frames = (unsigned)tracks->n_frames,
-                                       .tracks = (unsigned)(grrl_tracks_count_ids(tracks) +
-                                                            tracks->left_out.n + tracks->n_renewed),
-                                       .keyframes = perception->counts.keyframes_high,
-                                       .y_down = strcmp(scale.name, "px") == 0};
+    run->upright =
+        (struct grrl_report){.model = model,
+                             .perception = perception,
+                             .counts = &perception->counts,
+                             .recording = tracks,
+                             .warnings = &run->warnings,
+                             .term = run->term,
+                             .unit = scale.name,
+                             .profile = profile,
+                             .per_metre = per_metre,
+                             .noise = (double)perception->config.noise_m * per_metre,
+                             .frames = (unsigned)tracks->n_frames,
+                             .tracks = (unsigned)(grrl_tracks_count_ids(tracks) +
+                                                  tracks->left_out.n + tracks->n_renewed),
+                             .keyframes = perception->counts.keyframes_high,
+                             .y_down = strcmp(scale.name, "px") == 0};
     run->warnings.n = 0;
     grrl_doubt_input(tracks, &run->warnings);
-    grrl_doubt_unit(tracks, &run->report, config->unit_said, &run->warnings);
-    grrl_doubt_losses(&run->report, &run->warnings);
+    grrl_doubt_camera(&run->camera, &run->warnings);
+    grrl_doubt_unit(tracks, &run->upright, config->unit_said, &run->warnings);
+    grrl_doubt_losses(&run->upright, &run->warnings);
+    grrl_camera_to_picture(&run->camera, model, &run->picture);
+    run->report = run->upright;
+    run->report.model = &run->picture;
     return GRRL_RUN_FINE;
 }
 
@@ -210,7 +226,9 @@ enum grrl_run_result grrl_run_tracks(struct grrl_run *run, const struct grrl_run
         if (run->status != GRRL_OK)
             return run->status == GRRL_ERR_NONE ? GRRL_RUN_FEW_FOR_NOISE : GRRL_RUN_NO_NOISE;
     }
+    run->camera = (struct grrl_camera){0};
     if (!grrl_tracks_join_renewed(tracks, perception.noise_m) ||
+        (camera && !grrl_camera_undo(tracks, perception.noise_m, &run->camera)) ||
         !grrl_pace_configure(tracks, &perception))
         return GRRL_RUN_OUT_OF_MEMORY;
     enum grrl_run_result result = perceive(run, &perception, tracks);

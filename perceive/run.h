@@ -4,6 +4,7 @@
 #ifndef GRRL_PERCEIVE_RUN_H
 #define GRRL_PERCEIVE_RUN_H
 
+#include "camera.h"
 #include "report.h"
 #include "tracks.h"
 #include "warnings.h"
@@ -44,12 +45,15 @@ enum grrl_run_result {
 
 /* Some hundred KiB: static or on the heap. It must not be copied: report points into it. */
 struct grrl_run {
-    struct grrl_report report; /* once the run was fine */
+    struct grrl_report report;  /* once the run was fine: as the picture shows it, */
+    struct grrl_report upright; /* and with what the camera added undone, for motion.h */
     enum grrl_status status;
 
     /* private */
     struct grrl_perception perception;
     struct grrl_perception rigid;
+    struct grrl_camera camera;
+    struct grrl_model picture;
     struct grrl_noise noise;
     struct grrl_warnings warnings;
     struct grrl_term_node nodes[GRRL_RUN_TERM_NODES];

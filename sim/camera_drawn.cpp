@@ -1,4 +1,4 @@
-/* The drawn camera: a scene, coded. */
+/* The rendered camera: a scene, encoded. */
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -56,7 +56,7 @@ private:
 
 std::unique_ptr<Camera> make_camera(const CameraLook &look, PictureCoding coding)
 {
-    cv::setNumThreads(1); /* the same order of work, and one core */
+    cv::setNumThreads(1); /* a fixed order of operations, on one core */
     return std::make_unique<DrawnCamera>(look, coding);
 }
 

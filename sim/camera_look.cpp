@@ -1,4 +1,4 @@
-/* The look of the camera as text. */
+/* The appearance of the camera images as text. */
 #include "camera.hpp"
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ struct Entry {
 const Entry entries[] = {
     {"width", 160, 1920, nullptr, &CameraLook::width_px, "pixels"},
     {"height", 160, 1920, nullptr, &CameraLook::height_px, "pixels"},
-    {"scale", 0.5, 10, &CameraLook::mm_per_px, nullptr, "millimetres a pixel"},
+    {"scale", 0.5, 10, &CameraLook::mm_per_px, nullptr, "millimetres per pixel"},
     {"noise", 0, 30, &CameraLook::noise, nullptr, "of a pixel, grey levels"},
     {"blur", 0, 5, &CameraLook::blur_px, nullptr, "of the lens, pixels"},
     {"gradient", 0, 0.9, &CameraLook::gradient, nullptr, "light missing in the darkest corner"},

@@ -75,6 +75,18 @@ double squared_norm(const std::vector<double> &v)
     return sum;
 }
 
+/* Subtracts the projection of a row onto each of some unit vectors. */
+void subtract_span(const std::vector<std::vector<double>> &units, std::vector<double> &row)
+{
+    for (const std::vector<double> &unit : units) {
+        double along = 0.0;
+        for (size_t c = 0; c < row.size(); c++)
+            along += row[c] * unit[c];
+        for (size_t c = 0; c < row.size(); c++)
+            row[c] -= along * unit[c];
+    }
+}
+
 /* Column i: the derivative of f with respect to the forest's i-th joint value (central
  * difference). */
 template <typename Function>
@@ -149,15 +161,8 @@ std::vector<std::vector<double>> orthonormal_rows(const Matrix &matrix)
         for (size_t c = 0; c < matrix.columns; c++)
             row[c] = matrix.at(r, c);
         double before = std::sqrt(squared_norm(row));
-        for (int pass = 0; pass < 2; pass++) { /* twice is enough (Kahan) */
-            for (const std::vector<double> &unit : basis) {
-                double along = 0.0;
-                for (size_t c = 0; c < row.size(); c++)
-                    along += row[c] * unit[c];
-                for (size_t c = 0; c < row.size(); c++)
-                    row[c] -= along * unit[c];
-            }
-        }
+        for (int pass = 0; pass < 2; pass++) /* twice is enough (Kahan) */
+            subtract_span(basis, row);
         double norm = std::sqrt(squared_norm(row));
         if (before < 1e-9 || norm < 1e-6 * before)
             continue;
@@ -279,13 +284,7 @@ std::vector<bool> movable_joints(const ObjectSpec &object, const Forest &forest,
         for (size_t c = 0; c < row.size(); c++)
             row[c] = motion.at(j, c);
         double before = std::sqrt(squared_norm(row));
-        for (const std::vector<double> &unit : constraints) {
-            double along = 0.0;
-            for (size_t c = 0; c < row.size(); c++)
-                along += row[c] * unit[c];
-            for (size_t c = 0; c < row.size(); c++)
-                row[c] -= along * unit[c];
-        }
+        subtract_span(constraints, row);
         movable[j] = before > 1e-9 && std::sqrt(squared_norm(row)) > 1e-4 * before;
     }
     return movable;

@@ -164,7 +164,8 @@ bool wait_for_agent(const Node &node, const Options &options, int64_t &hint_us)
             (void)std::fprintf(stderr,
                                "grrl-sim: waiting for an agent on the same LCM provider: "
                                "start grrl-agent%s\n",
-                               options.camera ? ", and grrl-track --lcm, which sees for it" : "");
+                               options.camera ? ", and grrl-track --lcm to track points for it"
+                                              : "");
     }
     return true;
 }
@@ -194,15 +195,15 @@ bool loop(Node &node, lcm_t *lcm, const Options &options, const Results &results
     return true;
 }
 
-/* The table is then what the camera sees of it. */
+/* The table is then the camera's field of view. */
 bool add_camera(const Options &options, NodeConfig &config)
 {
     config.camera = make_camera(options.look, PictureCoding::JPEG);
     config.world.table_m = camera_view_m(options.look);
     std::string problem = check_world(config.world);
     if (config.camera == nullptr)
-        problem = "this build cannot draw pictures: OpenCV was not there when it was configured; "
-                  "run tools/setup camera, then configure and build again";
+        problem = "this build cannot render images because it was configured without OpenCV; run "
+                  "tools/setup camera, then configure and build again";
     if (!problem.empty())
         (void)std::fprintf(stderr, "grrl-sim: --camera: %s\n", problem.c_str());
     return problem.empty();

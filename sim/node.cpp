@@ -356,7 +356,7 @@ bool Node::send_frame()
     return more;
 }
 
-/* What would have stood with the points stands with the picture. */
+/* The image carries the fields that its points would have. */
 void Node::take_picture()
 {
     const grrl_points_t &points = points_.message;

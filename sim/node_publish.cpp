@@ -69,7 +69,7 @@ void Node::publish_picture()
             why);
 }
 
-/* Who sees a picture wants to know what in it is the tool. */
+/* The receiver of an image needs to know where the tool is in it. */
 void Node::publish_frame()
 {
     if (config_.camera == nullptr)

@@ -15,7 +15,7 @@ namespace
 constexpr int attempts_with_loops = 200; /* loops that do not close are drawn anew */
 constexpr int smallest_loop = 4;
 constexpr int greatest_loop = 5;
-constexpr uint16_t term_capacity = 256;
+constexpr uint16_t object_nodes = 256;
 
 struct Row {
     const char *name;
@@ -35,10 +35,10 @@ const Row rows[ObjectStream::SETTINGS] = {
     {"friction", false, 0, 5, 1, 1},
 };
 
-class Parser
+class StreamParser
 {
 public:
-    Parser(const std::string &text, std::string path) : text_(text), path_(std::move(path)) {}
+    StreamParser(const std::string &text, std::string path) : text_(text), path_(std::move(path)) {}
 
     Result<ObjectStream> parse()
     {
@@ -230,7 +230,7 @@ ObjectSpec ObjectStream::sample(uint64_t seed, const ObjectScale &scale) const
 
 Result<ObjectStream> stream_from_text(const std::string &text, const std::string &path)
 {
-    return Parser(text, path).parse();
+    return StreamParser(text, path).parse();
 }
 
 Result<ObjectStream> stream_from_file(const std::string &path)
@@ -246,9 +246,9 @@ Result<ObjectStream> stream_from_file(const std::string &path)
 
 std::string term_of(const ObjectSpec &object)
 {
-    std::vector<struct grrl_term_node> nodes(term_capacity);
+    std::vector<struct grrl_term_node> nodes(object_nodes);
     grrl_term_store store;
-    grrl_term_store_init(&store, nodes.data(), term_capacity);
+    grrl_term_store_init(&store, nodes.data(), object_nodes);
     grrl_name names[GRRL_MAX_LINKS];
     for (uint8_t i = 0; i < object.truth.n; i++) {
         bool background = object.truth.label[i] == GRRL_LABEL_BACKGROUND;

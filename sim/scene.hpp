@@ -1,10 +1,10 @@
 /*
- * scene.hpp: draws the table from above: patterned links, their shadows, the finger, and what
- * light, lens and sensor add. Only in builds with OpenCV.
+ * scene.hpp: renders the table from above: patterned links, their shadows, the finger, and the
+ * effects of light, lens and sensor. Only in builds with OpenCV.
  *
  * A point (x, y) m of the table lies at pixel (width / 2 + x / s, height / 2 - y / s), half a pixel
- * less each, since pixel (0, 0) has its centre there. A lens with distortion k shows it elsewhere
- * on the ray from the centre: what is seen at r, in halves of the width, lies at r / (1 + k r^2).
+ * less each, since pixel (0, 0) has its centre there. A lens with distortion k moves it along the
+ * ray from the centre: a point seen at r, in units of half the width, is really at r / (1 + k r^2).
  */
 #ifndef GRRL_SIM_SCENE_HPP
 #define GRRL_SIM_SCENE_HPP
@@ -24,10 +24,10 @@ class Scene
 public:
     Scene(const ObjectSpec &object, const CameraLook &look, uint64_t seed);
 
-    /* The picture stays until the next call. */
+    /* The image is valid until the next call. */
     const cv::Mat &draw(const std::vector<Pose> &poses, std::optional<Vec2> finger);
 
-    /* Where a point of the table is seen, and back: without an error. */
+    /* The exact pixel of a point on the table, and the inverse. */
     Vec2 to_px(Vec2 point_m) const;
     Vec2 to_m(Vec2 point_px) const;
 
@@ -57,9 +57,9 @@ private:
     uint64_t frame_ = 0;
     double finger_px_;
     std::vector<Pattern> patterns_;
-    cv::Mat table_;  /* CV_32FC3, as all but the picture */
+    cv::Mat table_;  /* CV_32FC3, like all others except the image */
     cv::Mat light_;  /* CV_32F, 0 .. 1 */
-    cv::Mat lens_x_; /* for each pixel of the picture, where it comes from */
+    cv::Mat lens_x_; /* for each pixel of the image, its source */
     cv::Mat lens_y_;
     cv::Mat shadow_; /* CV_32F */
     cv::Mat canvas_;

@@ -102,9 +102,9 @@ expect 1 'grrl-term: 1:1: expected a link or one of R, P, D, A, found '"'9x'"'
 
 # usage
 try='Try grrl-term --help'
-expect 2 "grrl-term: the command is parse, graph, canonical or match
+expect 2 "grrl-term: the command is parse, graph, canonical, match, rules or merge
 $try"
-expect 2 "grrl-term: the command is parse, graph, canonical or match
+expect 2 "grrl-term: the command is parse, graph, canonical, match, rules or merge
 $try" pares l1
 expect 2 "grrl-term: --dot requires graph
 $try" parse --dot l1
@@ -116,7 +116,7 @@ expect 2 "grrl-term: too few terms
 $try" match l1
 expect 2 "grrl-term: one term too many
 $try" parse l1 l2
-expect 2 "grrl-term: l3: one term too many
+expect 2 "grrl-term: one term too many
 $try" match l1 l2 l3
 expect 2 "grrl-term: only one term can come from standard input
 $try" match - -
@@ -131,6 +131,29 @@ for word in parse graph canonical match --dot --ignore-properties --all 'Exit st
         ;;
     esac
 done
+
+# rules and merge, on the store that comes with grrl
+store=$(dirname "$0")/../examples/mixed.store
+work=$(mktemp -d)
+"$tool" rules "$store" >"$work/rules" || failures=$((failures + 1))
+if ! grep -q '^ *[0-9]*% of  *[0-9]*  .*A(x, .*) if ' "$work/rules" ||
+    ! tail -1 "$work/rules" | grep -q '^24 rules for 1000 cases of 9702 pushes; .* explain 82%$'; then
+    echo "the rules of $store:"
+    cat "$work/rules"
+    failures=$((failures + 1))
+fi
+expect 0 '' merge "$store" "$store" "$work/twice"
+expect 1 "grrl-term: cannot write $work/twice; a new file in a folder is required" \
+    merge "$store" "$store" "$work/twice"
+expect 1 "grrl-term: $0: not a file of this kind; a store that grrl-agent --policy learn wrote is required" \
+    rules "$0"
+expect 1 "grrl-term: cannot read $work/none" rules "$work/none"
+"$tool" merge "$store" "$work/twice" "$work/ab" && "$tool" merge "$work/twice" "$store" "$work/ba"
+if ! cmp "$work/ab" "$work/ba"; then
+    echo "merge depends on the order"
+    failures=$((failures + 1))
+fi
+rm -r "$work"
 
 [ "$failures" -eq 0 ] || {
     echo "$failures failures"

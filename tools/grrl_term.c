@@ -13,6 +13,7 @@
 #include "grrl/structure/graph.h"
 #include "grrl/structure/match.h"
 #include "grrl/structure/term.h"
+#include "term_store.h"
 
 enum { EXIT_FINE = 0, EXIT_NO = 1 };
 enum { MAX_TEXT_BYTES = 65536, MAX_NODES = 16384 };
@@ -25,7 +26,9 @@ static const struct grrl_program program = {
     .usage = "grrl-term parse TERM\n"
              "       grrl-term graph [--dot] TERM\n"
              "       grrl-term canonical [--ignore-properties] TERM\n"
-             "       grrl-term match [--all] A B",
+             "       grrl-term match [--all] A B\n"
+             "       grrl-term rules STORE\n"
+             "       grrl-term merge STORE STORE OUT",
     .intro =
         "\n"
         "parse      the term in its normal form\n"
@@ -33,7 +36,11 @@ static const struct grrl_program program = {
         "canonical  one term and hash for all terms of the same structure\n"
         "match      whether A and B are the same structure, or one contains the other: with all\n"
         "           properties, then with properties dropped from the last place to the first;\n"
-        "           the links of A with those of B in the first mapping\n",
+        "           the links of A with those of B in the first mapping\n"
+        "rules      what a store of the policy learn says about pushes, as few rules: how many of "
+        "how\n"
+        "           many pushes revealed something, and how many links and joints a push revealed\n"
+        "merge      two stores of learn as one, in a new file, whatever the order\n",
     .outro = "TERM is a term or - for standard input:\n"
              "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by number, "
              "background\n"
@@ -43,7 +50,7 @@ static const struct grrl_program program = {
              "  x & y                        and\n"
              "  A(x, 45)                     an action: push link x from 45 degrees\n\n"
              "Exit status: 0 success, 1 no match or an error in a term, 2 wrong usage.\n",
-    .max_arguments = 3,
+    .max_arguments = 4,
     .arguments = "one term too many",
 };
 
@@ -322,6 +329,17 @@ static enum grrl_status try_match(const struct attempt *attempt, const struct st
     return status == GRRL_ERR_UNDECIDED ? status : GRRL_OK;
 }
 
+static int run_rules(const struct options *options)
+{
+    return term_store_rules(options->terms[0]) ? EXIT_FINE : EXIT_NO;
+}
+
+static int run_merge(const struct options *options)
+{
+    bool merged = term_store_merge(options->terms[0], options->terms[1], options->terms[2]);
+    return merged ? EXIT_FINE : EXIT_NO;
+}
+
 static int run_match(const struct options *options)
 {
     static const struct attempt attempts[] = {
@@ -357,15 +375,13 @@ static int run_match(const struct options *options)
 
 struct command {
     const char *name;
-    int n_terms;
+    int n_terms; /* or files */
     int (*run)(const struct options *options);
 };
 
 static const struct command commands[] = {
-    {"parse", 1, run_parse},
-    {"graph", 1, run_graph},
-    {"canonical", 1, run_canonical},
-    {"match", 2, run_match},
+    {"parse", 1, run_parse}, {"graph", 1, run_graph}, {"canonical", 1, run_canonical},
+    {"match", 2, run_match}, {"rules", 1, run_rules}, {"merge", 3, run_merge},
 };
 
 static const struct command *find_command(const char *name)
@@ -381,7 +397,7 @@ static const char *wrong_usage(const struct command *command, const struct optio
                                int n_terms)
 {
     if (command == NULL)
-        return "the command is parse, graph, canonical or match";
+        return "the command is parse, graph, canonical, match, rules or merge";
     if (options->dot && command->run != run_graph)
         return "--dot requires graph";
     if (options->ignore_properties && command->run != run_canonical)
@@ -389,7 +405,10 @@ static const char *wrong_usage(const struct command *command, const struct optio
     if (options->all && command->run != run_match)
         return "--all requires match";
     if (n_terms != command->n_terms)
-        return n_terms < command->n_terms ? "too few terms" : "one term too many";
+        return command->run == run_rules    ? "rules requires one store"
+               : command->run == run_merge  ? "merge requires two stores and a new file"
+               : n_terms < command->n_terms ? "too few terms"
+                                            : "one term too many";
     if (n_terms == 2 && strcmp(options->terms[0], "-") == 0 && strcmp(options->terms[1], "-") == 0)
         return "only one term can come from standard input";
     return NULL;

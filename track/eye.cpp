@@ -1,4 +1,4 @@
-/* Follows features from picture to picture, finds lost ones again and gives up bad ones. */
+/* Tracks features from image to image, recovers lost ones and drops bad ones. */
 #include "eye.hpp"
 
 #include <algorithm>
@@ -13,8 +13,7 @@ namespace grrl_track
 namespace
 {
 
-constexpr double smooth_px =
-    0.9; /* takes the noise and what interpolation makes of sharp texture */
+constexpr double smooth_px = 0.9; /* removes noise and interpolation artefacts of sharp texture */
 constexpr int levels = 3;
 const cv::Size window(15, 15);
 constexpr float forward_backward_px = 0.7f;
@@ -23,13 +22,13 @@ constexpr float least_share = 0.5f;
 constexpr float max_sd_px = 0.15f;
 constexpr float max_sparse_sd_px = 0.3f;
 constexpr float regained_correlation = 0.88f;
-constexpr float agree_px = 0.4f; /* of a neighbour's word, and more with its distance .. */
+constexpr float agree_px = 0.4f; /* from a neighbour's prediction, more with its distance ... */
 constexpr float agree_rad = 0.012f;
-constexpr float consensus_px = 0.3f; /* .. and of all that agree */
+constexpr float consensus_px = 0.3f; /* ... and from that of all that agree */
 constexpr size_t least_agreeing = 2;
-constexpr size_t least_share_agreeing = 3; /* one of three: a shadow agrees with itself */
+constexpr size_t least_share_agreeing = 3; /* one in three: a shadow agrees with itself */
 constexpr float moved_px = 0.7f;
-constexpr float still_px = 0.35f; /* from picture to picture */
+constexpr float still_px = 0.35f; /* from image to image */
 constexpr size_t still_outliers = 2;
 constexpr int least_still_frames = 4;
 constexpr int judging_frame = 8; /* of a rest */
@@ -73,7 +72,7 @@ void Eye::prepare(const View &view)
     std::swap(pyramid_, last_pyramid_);
 }
 
-/* From the last picture to this one, where each feature's search begins. */
+/* Tracks from the last image to this one; the result is where each feature's search starts. */
 void Eye::follow(const View &view)
 {
     for (Feature &feature : features_) {
@@ -129,7 +128,7 @@ void Eye::register_all()
             feature.pose = feature.before;
 }
 
-/* Lost features, where they were and where those that were found say. */
+/* Searches lost features where they were and where visible neighbours predict them. */
 void Eye::regain()
 {
     for (Feature &feature : features_) {
@@ -158,8 +157,8 @@ void Eye::regain()
     }
 }
 
-/* Whether enough neighbours expect a feature where it was found; too few to tell are no reason to
- * doubt. */
+/* Whether enough neighbours predict a feature where it was found; too few neighbours are no reason
+ * to doubt. */
 bool Eye::agrees(const Feature &feature) const
 {
     size_t asked = 0;
@@ -181,7 +180,7 @@ bool Eye::agrees(const Feature &feature) const
         return true;
     if (now.size() < least_agreeing || least_share_agreeing * now.size() < asked)
         return false;
-    /* The rigid motion of those that agree: where does it put the feature? */
+    /* Where does the rigid motion of those that agree place the feature? */
     float n = static_cast<float>(now.size());
     cv::Point2f a(0.0f, 0.0f);
     cv::Point2f b(0.0f, 0.0f);
@@ -214,7 +213,8 @@ void Eye::compare_neighbours()
             feature.agrees = agrees(feature);
 }
 
-/* At rest if told so, or else if all but a few features have stood still for some pictures. */
+/* At rest if the sender says so, or else if all but a few features have stood still for some
+ * images. */
 void Eye::watch_rest(Motion motion)
 {
     size_t moving = 0;
@@ -232,7 +232,8 @@ void Eye::watch_rest(Motion motion)
     rest_frames_ = rest ? rest_frames_ + 1 : 0;
 }
 
-/* Rest makes the looks of the new ones better, and shows what belongs elsewhere. */
+/* At rest, averages the appearance of new features and finds pixels that belong to something else.
+ */
 void Eye::use_rest()
 {
     for (Feature &feature : features_) {

@@ -1,13 +1,13 @@
 /*
- * eye.hpp: follows features through the pictures of a camera that stands still.
+ * eye.hpp: tracks features through the images of a stationary camera.
  *
- * Order of calls: look for each picture, points after each; reset when another scene begins.
+ * Order of calls: look for each image, then points; reset when a new scene begins.
  *
- * A feature is born at rest, where there is texture. From picture to picture it is tracked by
- * pyramidal Lucas-Kanade, forward and back; then its first look is registered, so that it does not
- * drift. One that is lost keeps its id and is looked for where its neighbours say that it must be.
- * One that its neighbours contradict (on a border, on a shadow) is not told, and soon given up.
- * Everything is in pixels: the eye knows no table. The same pictures give the same points.
+ * Features are created at rest, where there is texture. They are tracked from image to image by
+ * pyramidal Lucas-Kanade, forward and back; then the first appearance is registered to prevent
+ * drift. A lost feature keeps its id and is searched for where its neighbours predict it. One that
+ * contradicts its neighbours (on a border, on a shadow) is not reported, and soon dropped.
+ * Everything is in pixels: the eye knows no table. The same images give the same points.
  */
 #ifndef GRRL_TRACK_EYE_HPP
 #define GRRL_TRACK_EYE_HPP
@@ -23,9 +23,9 @@ namespace grrl_track
 {
 
 struct EyeConfig {
-    int max_points = 128; /* that are followed at a time */
+    int max_points = 128; /* tracked at a time */
     int max_ids = 184;    /* in a scene: perception remembers 192 */
-    int max_sparse = 24;  /* of these where texture is weak, as on a table */
+    int max_sparse = 24;  /* of these, where texture is weak, as on a table */
     float spacing_px = 9.0f;
     float sparse_spacing_px = 32.0f;
     float strong = 0.05f; /* texture below this share of the best is weak */
@@ -39,12 +39,12 @@ struct Disc {
     float radius;
 };
 
-/* A picture, and what is known of it. */
+/* An image, and what is known about it. */
 struct View {
     cv::Mat picture; /* CV_8UC1 or CV_8UC3 */
     Motion motion = Motion::UNKNOWN;
     std::vector<Disc> tool; /* what hides the scene */
-    cv::Mat tool_mask;      /* or where it is not 0; may be empty */
+    cv::Mat tool_mask;      /* nonzero where the tool hides the scene; may be empty */
     cv::Mat object_mask;    /* texture is weak where it is 0, as on the table; may be empty */
 };
 
@@ -63,10 +63,10 @@ public:
     void reset();
     void look(const View &view);
 
-    /* Of all features that were not given up, by ascending id. */
+    /* All features that were not dropped, by ascending id. */
     std::vector<Point> points() const;
 
-    /* Whether things were at rest in the last picture, as told or as seen. */
+    /* Whether things were at rest in the last image, as reported or as observed. */
     bool at_rest() const { return rest_frames_ > 0; }
 
     int ids() const { return next_id_ - first_id_; }
@@ -81,14 +81,14 @@ private:
         int32_t id;
         Patch patch;
         PatchPose pose;
-        PatchPose before;   /* in the last picture */
-        bool found = false; /* in this picture */
+        PatchPose before;   /* in the last image */
+        bool found = false; /* in this image */
         bool agrees = true; /* with its neighbours */
         bool given_up = false;
         bool sparse = false;
         bool has_moved = false;
-        int rest_period = 0; /* of its birth */
-        int doubts = 0;      /* rest periods in which its neighbours contradicted */
+        int rest_period = 0; /* in which it was created */
+        int doubts = 0;      /* rest periods in which its neighbours disagreed */
         std::vector<Neighbour> neighbours;
     };
 
@@ -112,7 +112,7 @@ private:
     int32_t next_id_ = 1;
     int rest_frames_ = 0; /* in a row */
     int rest_period_ = 0;
-    int still_frames_ = 0; /* in a row, as seen */
+    int still_frames_ = 0; /* in a row, as observed */
     cv::Mat grey_;
     cv::Mat smooth_; /* CV_32F */
     std::vector<cv::Mat> pyramid_;

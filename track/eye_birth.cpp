@@ -1,4 +1,4 @@
-/* Where new features are born, and who their neighbours are. */
+/* Creates new features and selects their neighbours. */
 #include <algorithm>
 #include <cmath>
 
@@ -14,11 +14,12 @@ namespace
 
 constexpr int corner_block = 9;
 constexpr int edge_px = Patch::half + 4;
-/* What the smaller eigenvalue of the gradients must be for a position within some 0.1 and 0.2
- * pixel, at one grey level of noise. */
+/* The smaller eigenvalue of the gradients needed for a position accuracy of about 0.1 and 0.2
+ * pixels, at one grey level of noise. */
 constexpr float strong_floor = 5.0f;
 constexpr float weak_floor = 0.5f;
-constexpr size_t reference_rank = 20; /* of the corners, as the best: some are accidents */
+constexpr size_t reference_rank =
+    20; /* of the corner that counts as the best: a few stronger ones are accidents */
 constexpr size_t max_neighbours = 8;
 constexpr float neighbour_reach_px = 60.0f;
 
@@ -27,7 +28,8 @@ struct Corner {
     cv::Point2f at;
 };
 
-/* The median of the second differences, which texture on a smaller part of the picture leaves. */
+/* Noise from the median of the second differences, which texture on less than half of the image
+ * does not affect. */
 float noise_of(const cv::Mat &grey)
 {
     std::vector<int> count(1021, 0);
@@ -44,7 +46,7 @@ float noise_of(const cv::Mat &grey)
     return std::max(0.5f, 1.48f * static_cast<float>(median) / std::sqrt(6.0f));
 }
 
-/* The local maxima of the smaller eigenvalue, strongest first; ties by place. */
+/* The local maxima of the smaller eigenvalue, strongest first; ties are ordered by position. */
 std::vector<Corner> corners_of(const cv::Mat &smooth, float least)
 {
     cv::Mat strength;
@@ -76,7 +78,7 @@ bool Eye::place_free(cv::Point2f point, float spacing) const
     return true;
 }
 
-/* Strong corners densely, weak ones sparsely: a table that is full of points looks like an object.
+/* Takes strong corners densely and weak ones sparsely: a table full of points looks like an object.
  */
 void Eye::give_birth(const View &view)
 {
@@ -121,7 +123,7 @@ void Eye::give_birth(const View &view)
     introduce(first);
 }
 
-/* Neighbours of those born last, and them as neighbours of others. */
+/* Selects neighbours for the newest features, and makes these neighbours of others. */
 void Eye::introduce(size_t first)
 {
     for (size_t i = first; i < features_.size(); i++) {

@@ -59,7 +59,8 @@ double blur_of(const cv::Mat &picture)
 {
     cv::Mat once;
     cv::Mat twice;
-    cv::GaussianBlur(grey_of(picture), once, cv::Size(), 1.0); /* noise is no sharpness */
+    cv::GaussianBlur(grey_of(picture), once, cv::Size(),
+                     1.0); /* noise must not count as sharpness */
     cv::GaussianBlur(once, twice, cv::Size(), 2.0);
     double slope = steepest(once);
     return slope > 0.0 ? steepest(twice) / slope : 1.0;
@@ -74,9 +75,9 @@ void Health::once(const char *what, const std::string &text)
 void Health::check_rate(double rate)
 {
     if (rate > 0.0 && rate < least_rate)
-        once("rate", with("%.1f pictures a second: points move too far from one to the next; at "
-                          "least 10 are needed: more light or a shorter exposure, a smaller "
-                          "picture, another USB port",
+        once("rate", with("%.1f images per second: points move too far from one to the next; at "
+                          "least 10 are needed: use more light or a shorter exposure, a smaller "
+                          "image, or another USB port",
                           rate));
 }
 
@@ -93,21 +94,21 @@ void Health::arrived(int64_t now_us)
 
 void Health::check_picture(const cv::Mat &picture)
 {
-    if (checked_) /* the first one tells, and it takes some ms */
+    if (checked_) /* the first image is enough, and the check takes a few ms */
         return;
     checked_ = true;
     double grey = cv::mean(grey_of(picture))[0];
     double blur = blur_of(picture);
     if (grey < dark_grey)
-        once("dark", with("the picture is dark, mean grey level %.0f of 255: more light, or a "
+        once("dark", with("the image is dark, mean grey level %.0f of 255: use more light or a "
                           "longer exposure",
                           grey));
     else if (grey > bright_grey)
-        once("bright", with("the picture is glaring, mean grey level %.0f of 255: less light, or a "
-                            "shorter exposure",
+        once("bright", with("the image is overexposed, mean grey level %.0f of 255: use less light "
+                            "or a shorter exposure",
                             grey));
     else if (blur > max_blur)
-        once("blur", with("the picture is blurred (%.2f, sharp is below 0.8): focus the lens, and "
+        once("blur", with("the image is blurred (%.2f, sharp is below 0.8): focus the lens and "
                           "keep the camera still",
                           blur));
 }
@@ -118,12 +119,12 @@ void Health::check_points(const std::vector<Point> &points)
     for (const Point &point : points)
         visible += point.visible;
     if (visible < few_points)
-        once("few", with("only %.0f points: the object needs texture; stick print or speckles on "
-                         "every link, and see that nothing hides it",
+        once("few", with("only %.0f points: the object needs texture; put print or speckles on "
+                         "every link, and make sure that nothing hides it",
                          static_cast<double>(visible)));
     if (visible_ >= 2 * few_points && 2 * visible < visible_)
-        once("lost", "half of the points were lost from one picture to the next: was the camera "
-                     "moved, or something moved too fast?");
+        once("lost", "half of the points were lost from one image to the next: was the camera "
+                     "moved, or did something move too fast?");
     visible_ = visible;
 }
 

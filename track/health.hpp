@@ -1,6 +1,6 @@
 /*
- * health.hpp: what may be wrong with the pictures: darkness, glare, blur, a slow camera, too few
- * points, a lost scene. Each is told once, with what to do.
+ * health.hpp: problems with the images: darkness, overexposure, blur, a slow camera, too few
+ * points, a lost scene. Each is reported once, with a remedy.
  */
 #ifndef GRRL_TRACK_HEALTH_HPP
 #define GRRL_TRACK_HEALTH_HPP
@@ -23,10 +23,10 @@ class Health
 public:
     explicit Health(std::function<void(const std::string &)> tell) : tell_(std::move(tell)) {}
 
-    /* Pictures a second, as told or as measured. */
+    /* Images per second, as reported or as measured. */
     void check_rate(double rate);
 
-    /* A live picture's arrival, by any clock. */
+    /* The arrival time of a live image, by any clock. */
     void arrived(int64_t now_us);
 
     void check_picture(const cv::Mat &picture);
@@ -39,11 +39,11 @@ private:
     std::set<std::string> told_;
     int64_t first_us_ = 0;
     int64_t pictures_ = 0;
-    size_t visible_ = 0; /* in the last picture */
+    size_t visible_ = 0; /* in the last image */
     bool checked_ = false;
 };
 
-/* Between 0, sharp, and 1: how much of the steepest slopes is left after some more blur. */
+/* Blur from 0 (sharp) to 1: the share of the steepest slopes that remains after additional blur. */
 double blur_of(const cv::Mat &picture);
 
 } // namespace grrl_track

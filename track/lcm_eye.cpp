@@ -1,4 +1,4 @@
-/* Takes pictures, tool and trial from messages, and sends points. */
+/* Receives images, tool positions and trials as messages, and sends points. */
 #include "lcm_eye.hpp"
 
 #include <opencv2/imgcodecs.hpp>
@@ -11,7 +11,7 @@ namespace
 
 constexpr int64_t silence_us = 1000000;
 
-/* Empty if the bytes are no picture of this size. */
+/* Empty if the bytes are not an image of this size. */
 cv::Mat picture_of(const grrl_image_t &image)
 {
     if (image.encoding == GRRL_IMAGE_T_RAW_GREY || image.encoding == GRRL_IMAGE_T_RAW_BGR) {
@@ -66,13 +66,13 @@ void LcmEye::tell_once(bool &told, const std::string &text)
     told = true;
 }
 
-/* Another sender takes over when the known one has been silent: it was restarted. */
+/* Another sender takes over if the known one has been silent: it was restarted. */
 bool LcmEye::known(int64_t session_id)
 {
     int64_t now = now_us_();
     if (session_id_ != 0 && session_id != session_id_ && now - heard_us_ < silence_us) {
-        tell_once(told_foreign_, "another camera or simulator sends pictures, too, and is ignored "
-                                 "while the first one is there");
+        tell_once(told_foreign_, "another camera or simulator is sending images, too; it is "
+                                 "ignored while the first one is present");
         return false;
     }
     if (session_id != session_id_) {
@@ -130,7 +130,7 @@ bool LcmEye::next(cv::Mat &picture, Motion &motion, bool &new_scene)
     const grrl_image_t &image = image_->message;
     picture = picture_of(image);
     if (picture.empty()) {
-        tell_once(told_rejected_, "image_t: the bytes are no picture of the size it tells");
+        tell_once(told_rejected_, "image_t: the bytes are not an image of the given size");
         return false;
     }
     motion = motion_of(image.phase);

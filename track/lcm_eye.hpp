@@ -1,9 +1,9 @@
 /*
- * lcm_eye.hpp: the eye on LCM: pictures in, points out. docs/messages.md has the protocol.
+ * lcm_eye.hpp: the eye on LCM: images in, points out. docs/messages.md describes the protocol.
  *
- * Points go out in the name of who sent the picture: its session, frame, trial, push and phase. A
- * picture that comes again, as in lock-step, is answered again with the same points. A camera of
- * one's own has a session of its own: publish_own.
+ * Points carry the session, frame, trial, push and phase of their image. A repeated image, as in
+ * lock-step, is answered again with the same points. Points of an own camera have their own
+ * session: see publish_own.
  */
 #ifndef GRRL_TRACK_LCM_EYE_HPP
 #define GRRL_TRACK_LCM_EYE_HPP
@@ -34,18 +34,18 @@ public:
     LcmEye(const LcmEye &) = delete;
     LcmEye &operator=(const LcmEye &) = delete;
 
-    /* The newest picture that was not looked at, if there is one; new_scene: it shows another
-     * trial than the last. publish_points answers it. */
+    /* The newest unprocessed image, if there is one; new_scene: it shows a different trial than the
+     * last. publish_points answers it. */
     bool next(cv::Mat &picture, Motion &motion, bool &new_scene);
     void publish_points(const std::vector<Point> &points, const Table &table);
 
-    /* Points of an own camera. */
+    /* Publishes points of an own camera. */
     void publish_own(int64_t session_id, const std::vector<Point> &points, const Table &table);
 
-    /* Where the robot says that its tool is, in metres; of the picture's push, if there is one. */
+    /* The robot's tool position in metres, during the push of the image. */
     std::optional<cv::Point2d> tool() const;
 
-    /* The supervisor of the pictures has no further trial. */
+    /* The supervisor of the images has no further trials. */
     bool finished() const { return finished_; }
     bool pictures_came() const { return session_id_ != 0; }
 
@@ -65,13 +65,13 @@ private:
     std::function<void(const std::string &)> tell_;
     grrl_lcm::Subscriptions subscriptions_;
     std::unique_ptr<grrl_wire_image> incoming_;
-    std::unique_ptr<grrl_wire_image> image_; /* looked at next, or last */
+    std::unique_ptr<grrl_wire_image> image_; /* to be processed, or the last one processed */
     bool pending_ = false;
     int64_t session_id_ = 0;
     int64_t heard_us_ = 0;
     int32_t trial_id_ = -1;
     grrl_push_status_t status_{};
-    grrl_wire_points points_{}; /* the last that went out */
+    grrl_wire_points points_{}; /* the last ones sent */
     int64_t own_seq_ = 0;
     bool finished_ = false;
     bool told_rejected_ = false;

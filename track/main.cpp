@@ -1,5 +1,5 @@
 /*
- * grrl-track: points from pictures, for grrl-perceive and grrl-agent.
+ * grrl-track: points from images, for grrl-perceive and grrl-agent.
  *
  * Exit status: 0 fine, 1 failed, 2 wrong command line.
  */
@@ -26,7 +26,7 @@ namespace
 
 constexpr int poll_ms = 50;
 constexpr int64_t hint_period_us = 5000000;
-constexpr double hue_reach = 15.0; /* degrees to either side */
+constexpr double hue_reach = 15.0; /* degrees to each side */
 constexpr int least_saturation = 80;
 constexpr int least_value = 40;
 constexpr double foreign_grey = 25.0; /* from the empty table */
@@ -75,7 +75,7 @@ cv::Mat mask_of_hue(const cv::Mat &picture, double hue)
     return mask;
 }
 
-/* From pictures to tracks, wherever pictures come from. */
+/* From images to tracks, whatever the source of the images. */
 class Track
 {
 public:
@@ -133,7 +133,7 @@ bool Track::begin(const cv::Mat &picture, double rate)
     if (problem.empty() && !options_.empty.empty()) {
         empty_ = cv::imread(options_.empty, cv::IMREAD_GRAYSCALE);
         if (empty_.size() != size_)
-            problem = "--empty " + options_.empty + ": no picture, or not of the same size, " +
+            problem = "--empty " + options_.empty + ": not an image, or not of the same size, " +
                       std::to_string(size_.width) + " x " + std::to_string(size_.height);
     }
     if (problem.empty() && !options_.csv.empty())
@@ -147,7 +147,7 @@ bool Track::begin(const cv::Mat &picture, double rate)
 bool Track::look(const cv::Mat &picture, Motion motion, std::optional<cv::Point2d> tool_m)
 {
     if (picture.size() != size_)
-        return fail("the pictures change their size");
+        return fail("the size of the images changes");
     View view;
     view.picture = picture;
     view.motion = motion;
@@ -185,7 +185,7 @@ bool Track::end()
     if (!problem.empty())
         return fail(problem);
     if (!options_.quiet)
-        (void)std::fprintf(stderr, "grrl-track: %lld pictures, %d points\n",
+        (void)std::fprintf(stderr, "grrl-track: %lld images, %d points\n",
                            static_cast<long long>(frames_), eye_.ids());
     return true;
 }
@@ -195,21 +195,21 @@ lcm_t *open_lcm(const std::string &url)
     lcm_t *lcm = lcm_create(url.empty() ? nullptr : url.c_str());
     if (lcm != nullptr && lcm_get_fileno(lcm) >= 0)
         return lcm;
-    (void)fail("LCM does not start. If this machine has no network:\n"
+    (void)fail("cannot start LCM. If this machine has no network:\n"
                "  ip link set lo up; ip route add 224.0.0.0/4 dev lo\n"
-               "or name another provider with --lcm-url.");
+               "or choose another provider with --lcm-url.");
     if (lcm != nullptr)
         lcm_destroy(lcm);
     return nullptr;
 }
 
-/* Takes in what has come. */
+/* Handles the messages that have arrived. */
 bool handle(lcm_t *lcm, int wait_ms)
 {
     int handled = lcm_handle_timeout(lcm, wait_ms);
     while (handled > 0)
         handled = lcm_handle_timeout(lcm, 0);
-    return handled >= 0 || stop != 0 || fail("LCM fails to receive");
+    return handled >= 0 || stop != 0 || fail("LCM failed to receive");
 }
 
 bool track_lcm(const Options &options, Track &track, LcmEye &wire, lcm_t *lcm)
@@ -225,7 +225,7 @@ bool track_lcm(const Options &options, Track &track, LcmEye &wire, lcm_t *lcm)
         if (!wire.next(picture, motion, new_scene)) {
             if (!wire.pictures_came() && now_us() - hinted_us > hint_period_us && !options.quiet) {
                 hinted_us = now_us();
-                (void)std::fprintf(stderr, "grrl-track: waiting for pictures on the same LCM "
+                (void)std::fprintf(stderr, "grrl-track: waiting for images on the same LCM "
                                            "provider: start grrl-sim --camera\n");
             }
             continue;
@@ -267,7 +267,7 @@ bool calibrate(const Options &options, Source &source)
 {
     cv::Mat picture;
     if (!source.next(picture))
-        return fail(source.problem().empty() ? "there is no picture" : source.problem());
+        return fail(source.problem().empty() ? "there are no images" : source.problem());
     Table table;
     double error_px = 0.0;
     std::string problem = table.calibrate(picture, options.board, error_px);
@@ -319,10 +319,10 @@ int main(int argc, char **argv)
     (void)std::signal(
         SIGINT, [](int) { stop = 1; });
     (void)std::signal(SIGTERM, [](int) { stop = 1; });
-    /* Whatever a message claims to hold: no picture larger than image_t allows. */
+    /* Whatever a message claims, no image may be larger than image_t allows. */
     (void)setenv("OPENCV_IO_MAX_IMAGE_PIXELS", "16777216", 0);
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    cv::setNumThreads(1); /* the same order of work, and one core */
+    cv::setNumThreads(1); /* a fixed order of operations, on one core */
     try {
         return run(options) ? 0 : 1;
     } catch (const std::exception &error) {

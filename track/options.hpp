@@ -12,12 +12,12 @@ namespace grrl_track
 {
 
 struct Options {
-    std::string input; /* video, folder or picture; empty: none, as everywhere here */
+    std::string input; /* video, folder or image; empty: none, as for all texts here */
     int camera = -1;   /* -1: none */
     bool lcm = false;
     bool publish = false;
     std::string lcm_url;
-    double scale_mm = 0.0; /* a pixel; 0: not given */
+    double scale_mm = 0.0; /* per pixel; 0: not given */
     double distortion = 0.0;
     std::vector<PointPair> points;
     Board board; /* columns 0: none */

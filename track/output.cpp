@@ -1,4 +1,4 @@
-/* Writes tracks as rows of CSV, and draws them into pictures. */
+/* Writes tracks as rows of CSV, and draws them into images. */
 #include "output.hpp"
 
 #include <cerrno>
@@ -22,7 +22,7 @@ bool ends_with(const std::string &text, const std::string &end)
            text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/* Neighbouring numbers far apart on the wheel. */
+/* Gives neighbouring ids distant hues. */
 cv::Scalar colour_of(int32_t id)
 {
     cv::Mat hsv(1, 1, CV_8UC3, cv::Scalar((id * 67) % 180, 230, 255));
@@ -47,7 +47,7 @@ std::string Csv::open(const std::string &path)
     return file_ != nullptr ? std::string() : path + ": " + std::strerror(errno);
 }
 
-/* A row that is there at once may be read at once. */
+/* Flushes, so that rows can be read at once. */
 std::string Csv::write(int64_t frame, const std::vector<Point> &points, const Table &table)
 {
     if (!header_)
@@ -90,9 +90,9 @@ std::string Drawing::open(const std::string &path, cv::Size size, double rate)
     if (writer_.open(path, codec, rate > 0.0 ? rate : 30.0, size))
         return {};
     return path +
-           ": no video can be written there: the folder does not exist or may not be "
-           "written, or OpenCV lacks the encoder (" +
-           (avi ? "MJPG" : "mp4v") + "); a name without .avi and .mp4 makes a folder of pictures";
+           ": cannot write a video there: the folder does not exist or is not writable, or OpenCV "
+           "lacks the encoder (" +
+           (avi ? "MJPG" : "mp4v") + "); a name without .avi or .mp4 creates a folder of images";
 }
 
 cv::Mat Drawing::draw(const View &view, const std::vector<Point> &points)

@@ -1,4 +1,4 @@
-/* output.hpp: tracks as CSV, and drawn into the pictures. */
+/* output.hpp: tracks as CSV, and drawn into the images. */
 #ifndef GRRL_TRACK_OUTPUT_HPP
 #define GRRL_TRACK_OUTPUT_HPP
 
@@ -23,7 +23,7 @@ class Csv
 public:
     ~Csv();
 
-    /* "-" is standard output. What is wrong, or an empty text, as below. */
+    /* "-" is standard output. Returns an error message, or an empty text, as below. */
     std::string open(const std::string &path);
     std::string write(int64_t frame, const std::vector<Point> &points, const Table &table);
     std::string close();
@@ -34,14 +34,14 @@ private:
     bool header_ = false;
 };
 
-/* Pictures with the tracks drawn in: FILE.avi or FILE.mp4, or else a folder, which is made. */
+/* Images with the tracks drawn in: FILE.avi or FILE.mp4, or else a folder, which is created. */
 class Drawing
 {
 public:
     std::string open(const std::string &path, cv::Size size, double rate);
     std::string write(const View &view, const std::vector<Point> &points);
 
-    /* Each point with where it came from in the last pictures. */
+    /* Draws each point with its path in the last images. */
     cv::Mat draw(const View &view, const std::vector<Point> &points);
 
 private:

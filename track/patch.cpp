@@ -15,22 +15,23 @@ constexpr int max_steps = 8;
 constexpr float converged_px = 0.01f;
 constexpr float farthest_px = 3.0f; /* from the guess */
 constexpr float farthest_rad = 0.3f;
-constexpr float tukey = 4.7f;        /* residuals beyond this many deviations do not count */
-constexpr float least_scale = 1.5f;  /* grey levels: no residual below is telling */
-constexpr float correlated = 2.0f;   /* smoothing makes neighbours err alike */
-constexpr float foreign_grey = 7.0f; /* average residual of a pixel that belongs elsewhere .. */
+constexpr float tukey = 4.7f;       /* residuals beyond this many deviations have no weight */
+constexpr float least_scale = 1.5f; /* grey levels: smaller residuals mean nothing */
+constexpr float correlated = 2.0f;  /* smoothing correlates the errors of neighbours */
+constexpr float foreign_grey =
+    7.0f; /* average residual of a pixel that belongs to something else ... */
 constexpr float foreign_deviations = 3.5f;
 
 constexpr int unknowns = 5; /* shift x, shift y, rotation, gain, offset */
 
 } // namespace
 
-/* Weighted normal equations, and what it takes to judge the fit. */
+/* Weighted normal equations, and sums to judge the fit. */
 struct Patch::Normal {
     float matrix[unknowns][unknowns] = {};
     float right[unknowns] = {};
     float weight = 0.0f;      /* robust, sum */
-    float full_weight = 0.0f; /* without outliers left out */
+    float full_weight = 0.0f; /* including outliers */
     float squares = 0.0f;     /* of residuals */
     float sum_t = 0.0f;       /* for the correlation */
     float sum_tt = 0.0f;

@@ -1,10 +1,10 @@
 /*
- * patch.hpp: the look of a feature when it was born, and where that look lies in a later picture.
+ * patch.hpp: the appearance of a feature at its creation, and its pose in a later image.
  *
- * Tracking from frame to frame drifts; registering the first look does not. A patch is compared
- * under shift, rotation, gain and offset by Gauss-Newton steps (inverse compositional, with all
- * five unknowns and robust weights), so that light and what covers a part of it do little. Pixels
- * that have shown to belong to something else lose their weight for good.
+ * Tracking from frame to frame drifts; registering the first appearance does not. A patch is
+ * aligned under shift, rotation, gain and offset by Gauss-Newton steps (inverse compositional, with
+ * all five unknowns and robust weights), so that light and partial occlusion have little effect.
+ * Pixels that turn out to belong to something else are excluded for good.
  */
 #ifndef GRRL_TRACK_PATCH_HPP
 #define GRRL_TRACK_PATCH_HPP
@@ -17,7 +17,7 @@
 namespace grrl_track
 {
 
-/* Where a patch lies: its centre in pixels, and how far it has turned since its birth. */
+/* The pose of a patch: its centre in pixels, and its rotation since its creation. */
 struct PatchPose {
     float x = 0.0f;
     float y = 0.0f;
@@ -31,9 +31,9 @@ float distance(const PatchPose &a, const PatchPose &b); /* of the centres */
 struct PatchFit {
     bool good = false;
     PatchPose pose;
-    float correlation = 0.0f; /* of what counts, 0 .. 1 */
+    float correlation = 0.0f; /* of the weighted pixels, 0 .. 1 */
     float share = 0.0f;       /* of the weight that fits */
-    float sd_px = 0.0f;       /* of the centre, as the residuals tell */
+    float sd_px = 0.0f;       /* of the centre, estimated from the residuals */
 };
 
 class Patch
@@ -43,22 +43,23 @@ public:
     static constexpr int side = 2 * half + 1;
     static constexpr int n = side * side;
 
-    /* Takes the look around a point; smooth is CV_32F. False: too near to the picture's edge. */
+    /* Takes the appearance around a point; smooth is CV_32F. false: too close to the edge of the
+     * image. */
     bool take(const cv::Mat &smooth, float x, float y);
 
-    /* Averages one more picture of the same look at its birth in. */
+    /* Averages in one more image of the same appearance at its first pose. */
     void average(const cv::Mat &smooth);
 
-    /* From a guess within some two pixels. Not good: it left the picture, or did not converge. */
+    /* Refines a guess within about two pixels. Not good: it left the image, or did not converge. */
     PatchFit find(const cv::Mat &smooth, const PatchPose &guess);
 
-    /* Adds the residuals of the last find to those that judge_pixels looks at. */
+    /* Adds the residuals of the last find to those that judge_pixels uses. */
     void remember_residuals();
 
-    /* Takes the weight from pixels that did not fit, on average, since the last call. */
+    /* Excludes pixels that on average did not fit since the last call. */
     void judge_pixels();
 
-    /* Of the weight at birth, what is left. */
+    /* The remaining share of the initial weight. */
     float kept() const;
 
     float x() const { return birth_.x; }

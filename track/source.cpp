@@ -1,4 +1,4 @@
-/* Reads cameras, videos, folders and single pictures through OpenCV. */
+/* Reads cameras, videos, folders and single images through OpenCV. */
 #include "source.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace grrl_track
 namespace
 {
 
-/* The names in a folder that a test accepts, in the order of their numbers and letters. */
+/* The names in a folder that a test accepts, in natural order. */
 template <typename Test> std::vector<std::string> names_in(const std::string &path, Test test)
 {
     std::vector<std::string> names;
@@ -60,9 +60,9 @@ public:
             return true;
         }
         if (live_)
-            problem_ = "the camera gives no more pictures; was it unplugged?";
+            problem_ = "the camera delivers no more images; was it unplugged?";
         else if (pictures_ == 0)
-            problem_ = "no picture in it can be decoded; convert it, for example with "
+            problem_ = "no image in it can be decoded; convert it, for example with "
                        "ffmpeg -i IN -c:v mjpeg -q:v 3 OUT.avi";
         return false;
     }
@@ -88,10 +88,10 @@ public:
         const std::string &path = paths_[at_++];
         picture = cv::imread(path, cv::IMREAD_COLOR);
         if (picture.empty())
-            problem_ = path + ": this is no picture that can be read; JPEG and PNG can";
+            problem_ = path + ": not a readable image; use JPEG or PNG";
         else if (at_ > 1 && picture.size() != size_)
             problem_ = path + ": it is " + std::to_string(picture.cols) + " x " +
-                       std::to_string(picture.rows) + ", those before are " +
+                       std::to_string(picture.rows) + ", the previous ones are " +
                        std::to_string(size_.width) + " x " + std::to_string(size_.height);
         size_ = picture.size();
         return problem_.empty();
@@ -115,15 +115,16 @@ std::unique_ptr<Source> open_camera(int number, std::string &problem)
     if (stat(device.c_str(), &status) != 0) {
         problem = "there is no camera " + std::to_string(number) + " (" + device + "); ";
         if (there.empty())
-            problem += "no camera at all is plugged in, or this container may not see it";
+            problem += "no camera is connected, or this container has no access to it";
         for (size_t i = 0; i < there.size(); i++)
             problem += (i == 0 ? "there are /dev/" : ", /dev/") + there[i];
         return nullptr;
     }
     cv::VideoCapture capture(number, cv::CAP_V4L2);
     if (!capture.isOpened()) {
-        problem = device + " does not open; is another program using it, and may you read it "
-                           "(group video)?";
+        problem =
+            device +
+            " cannot be opened; is another program using it, and do you have access (group video)?";
         return nullptr;
     }
     return std::make_unique<Video>(std::move(capture), true);
@@ -142,7 +143,7 @@ std::unique_ptr<Source> open_file(const std::string &path, std::string &problem)
         for (std::string &name : paths)
             name = path + "/" + name;
         if (paths.empty()) {
-            problem = path + ": there is no picture in this folder; .jpg and .png are read";
+            problem = path + ": there are no images in this folder; .jpg and .png are read";
             return nullptr;
         }
         return std::make_unique<Pictures>(std::move(paths));
@@ -152,9 +153,8 @@ std::unique_ptr<Source> open_file(const std::string &path, std::string &problem)
     cv::VideoCapture capture(path);
     if (!capture.isOpened()) {
         problem = path +
-                  ": this is no video, or the codec to decode it is missing; convert it, "
-                  "for example with ffmpeg -i IN -c:v mjpeg -q:v 3 OUT.avi, or give a folder "
-                  "of pictures";
+                  ": not a video, or the codec to decode it is missing; convert it, for example "
+                  "with ffmpeg -i IN -c:v mjpeg -q:v 3 OUT.avi, or use a folder of images";
         return nullptr;
     }
     return std::make_unique<Video>(std::move(capture), false);

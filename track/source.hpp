@@ -1,5 +1,5 @@
 /*
- * source.hpp: where pictures come from: a camera, a video, a folder of pictures or a single one.
+ * source.hpp: sources of images: a camera, a video, a folder of images or a single one.
  */
 #ifndef GRRL_TRACK_SOURCE_HPP
 #define GRRL_TRACK_SOURCE_HPP
@@ -17,11 +17,11 @@ class Source
 public:
     virtual ~Source() = default;
 
-    /* The next picture, CV_8UC1 or CV_8UC3. False at the end, or with what is wrong in problem().
+    /* The next image, CV_8UC1 or CV_8UC3. false at the end, or with an error message in problem().
      */
     virtual bool next(cv::Mat &picture) = 0;
 
-    /* Pictures a second, 0: not known. */
+    /* Images per second; 0: not known. */
     virtual double rate() const { return 0.0; }
 
     virtual bool live() const { return false; }
@@ -31,7 +31,7 @@ protected:
     std::string problem_;
 };
 
-/* Nothing, and a message in problem that says what would be right. */
+/* On failure NULL, and a message in `problem` that says what would be right. */
 std::unique_ptr<Source> open_camera(int number, std::string &problem);
 std::unique_ptr<Source> open_file(const std::string &path, std::string &problem);
 

@@ -1,4 +1,4 @@
-/* Fits homography and lens distortion, finds checkerboards, keeps calibrations in files. */
+/* Fits homography and lens distortion, finds checkerboards, loads and saves calibrations. */
 #include "table.hpp"
 
 #include <cerrno>
@@ -20,7 +20,7 @@ namespace
 constexpr double least_board_error_px = 1.0;
 constexpr double distortion_range = 0.25;
 constexpr int distortion_steps = 40; /* of a golden section */
-constexpr double degenerate = 0.02;  /* height of a triangle over its longest side */
+constexpr double degenerate = 0.02;  /* height of a triangle divided by its longest side */
 
 cv::Point2d apply(const cv::Matx33d &h, cv::Point2d point)
 {
@@ -28,7 +28,7 @@ cv::Point2d apply(const cv::Matx33d &h, cv::Point2d point)
     return {v[0] / v[2], v[1] / v[2]};
 }
 
-/* Three of the points lie nearly on a line, or two on each other. */
+/* Whether the three points are nearly on a line, or two of them coincide. */
 bool thin(cv::Point2d a, cv::Point2d b, cv::Point2d c)
 {
     double longest = std::max({cv::norm(a - b), cv::norm(b - c), cv::norm(c - a)});
@@ -75,7 +75,7 @@ void Table::set_scale(cv::Size picture, double mm_per_px, double distortion)
     known_ = true;
 }
 
-/* The homography that is best with this distortion; what is left, root mean square, pixels. */
+/* Fits the best homography for this distortion; returns the root mean square residual in pixels. */
 double Table::fit(const std::vector<PointPair> &pairs, double distortion)
 {
     std::vector<cv::Point2d> straight;
@@ -105,7 +105,7 @@ std::string Table::set_points(cv::Size picture, const std::vector<PointPair> &pa
                               double distortion)
 {
     if (pairs.size() < 4)
-        return "four points are needed, there are " + std::to_string(pairs.size());
+        return "four points are needed; there are " + std::to_string(pairs.size());
     for (size_t i = 0; i < 4; i++)
         for (size_t j = i + 1; j < 4; j++)
             for (size_t k = j + 1; k < 4; k++)
@@ -113,17 +113,17 @@ std::string Table::set_points(cv::Size picture, const std::vector<PointPair> &pa
                     thin(pairs[i].m, pairs[j].m, pairs[k].m))
                     return "points " + std::to_string(i + 1) + ", " + std::to_string(j + 1) +
                            " and " + std::to_string(k + 1) +
-                           " lie on a line; of the first four no three may: take corners of a "
-                           "rectangle";
+                           " are on a line; no three of the first four may be: use the corners of "
+                           "a rectangle";
     Table table;
     table.picture_ = picture;
     double error_px = table.fit(pairs, distortion);
     if (!(error_px < 5.0)) {
         char text[120];
-        (void)std::snprintf(text, sizeof text,
-                            "the points do not fit a plane, they are off by %.1f pixels; is one of "
-                            "them mistyped?",
-                            error_px);
+        (void)std::snprintf(
+            text, sizeof text,
+            "the points do not fit a plane; they are off by %.1f pixels; is one of them mistyped?",
+            error_px);
         return text;
     }
     *this = table;
@@ -142,7 +142,7 @@ std::string Table::calibrate(const cv::Mat &picture, const Board &board, double 
                                    cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE))
         return "no checkerboard with " + std::to_string(board.columns) + " x " +
                std::to_string(board.rows) +
-               " inner corners is seen; all of it must be in the picture, flat, sharp, evenly lit "
+               " inner corners is visible; all of it must be in the image, flat, sharp, evenly lit "
                "and with a white border";
     cv::cornerSubPix(grey, corners, {5, 5}, {-1, -1},
                      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 40, 0.001});
@@ -204,9 +204,9 @@ std::string Table::load(const std::string &path, cv::Size picture)
     bool good = file && head == "grrl-track calibration 1" && std::abs(table.distortion_) < 1.0 &&
                 std::abs(cv::determinant(table.to_table_)) > 1e-15;
     if (!good)
-        return path + ": this is no calibration; make one with grrl-track --calibrate";
+        return path + ": not a calibration; create one with grrl-track --calibrate";
     if (table.picture_ != picture)
-        return path + ": it is for pictures of " + std::to_string(table.picture_.width) + " x " +
+        return path + ": it is for images of " + std::to_string(table.picture_.width) + " x " +
                std::to_string(table.picture_.height) + ", these are " +
                std::to_string(picture.width) + " x " + std::to_string(picture.height) +
                "; calibrate again at this size";
@@ -234,7 +234,7 @@ std::string parse_points(const std::string &text, std::vector<PointPair> &pairs)
         pairs.push_back(pair);
     }
     if (pairs.size() < 4)
-        return "four points or more, not " + std::to_string(pairs.size()) +
+        return "at least four points, not " + std::to_string(pairs.size()) +
                "; as in \"12,30=-0.4,0.3 628,30=0.4,0.3 12,450=-0.4,-0.3 628,450=0.4,-0.3\"";
     return {};
 }

@@ -1,10 +1,10 @@
 /*
  * table.hpp: from pixels to metres on the table.
  *
- * A camera that looks straight or at a slant onto a plane is a homography. A lens with distortion k
- * moves points along the ray from the picture's centre: one seen at r, in halves of the picture's
- * width, should be at r / (1 + k r^2) (Fitzgibbon's division model). Both come from a scale, from
- * points whose place is known, or from a picture of a checkerboard.
+ * A camera looking at a plane, straight or at a slant, is described by a homography. A lens with
+ * distortion k moves points along the ray from the image centre: a point seen at r, in units of
+ * half the image width, should be at r / (1 + k r^2) (Fitzgibbon's division model). Both are
+ * determined by a scale, by points with known positions, or by an image of a checkerboard.
  */
 #ifndef GRRL_TRACK_TABLE_HPP
 #define GRRL_TRACK_TABLE_HPP
@@ -31,31 +31,32 @@ struct Board {
 class Table
 {
 public:
-    /* Whether there is a way to metres; else to_m gives pixels. */
+    /* Whether metres are known; otherwise to_m returns pixels. */
     bool known() const { return known_; }
 
     cv::Point2d to_m(cv::Point2d px) const;
     cv::Point2d to_px(cv::Point2d m) const;
 
-    /* Straight above: the origin lies in the middle, y points up. */
+    /* A camera straight above: the origin is in the middle, y points up. */
     void set_scale(cv::Size picture, double mm_per_px, double distortion);
 
-    /* The functions below return what is wrong, or an empty text, and change nothing then. */
+    /* The functions below return an empty text, or an error message, in which case they change
+     * nothing. */
 
-    /* At least four points, no three of them on a line; with a given distortion. */
+    /* From at least four points, no three of them on a line, with a given distortion. */
     std::string set_points(cv::Size picture, const std::vector<PointPair> &pairs,
                            double distortion);
 
     /* Finds the board and fits homography and distortion; the origin is its first corner, x along
-     * its columns. error_px: of its corners, root mean square. */
+     * its columns. error_px: root mean square error of the corners. */
     std::string calibrate(const cv::Mat &picture, const Board &board, double &error_px);
 
     std::string save(const std::string &path) const;
     std::string load(const std::string &path, cv::Size picture);
 
 private:
-    cv::Point2d straighten(cv::Point2d px) const; /* takes the distortion out, .. */
-    cv::Point2d bend(cv::Point2d straight) const; /* .. and brings it in */
+    cv::Point2d straighten(cv::Point2d px) const; /* removes the distortion, ... */
+    cv::Point2d bend(cv::Point2d straight) const; /* ... and adds it */
     double fit(const std::vector<PointPair> &pairs, double distortion);
 
     bool known_ = false;

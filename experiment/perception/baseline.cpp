@@ -43,7 +43,7 @@ void Baseline::rest(const std::vector<Frame> &frames)
     pictures_.push_back(std::move(picture));
 }
 
-/* Whether two features kept their distance, in all pictures that show both. */
+/* Whether two features kept their distance in all snapshots that show both. */
 bool Baseline::rigid(size_t a, size_t b) const
 {
     double least = HUGE_VAL;
@@ -80,8 +80,7 @@ std::vector<std::vector<size_t>> Baseline::components(const std::vector<size_t> 
     return components;
 }
 
-/* Components, divided where less than half of the edges there could be hold two parts together.
- */
+/* Components, divided where two parts are held together by less than half of the possible edges. */
 std::vector<std::vector<size_t>> Baseline::clusters() const
 {
     std::vector<size_t> all(features_);
@@ -116,7 +115,7 @@ std::vector<std::vector<size_t>> Baseline::clusters() const
     return clusters;
 }
 
-/* Most of its features have been elsewhere than where they were first. */
+/* Whether most of its features have left their first position. */
 bool Baseline::moved(const std::vector<size_t> &body) const
 {
     size_t votes = 0;
@@ -134,7 +133,7 @@ bool Baseline::moved(const std::vector<size_t> &body) const
     return 2 * votes > body.size();
 }
 
-/* The motion of a body between two pictures; false if too few features are in both. */
+/* The motion of a body between two snapshots; false if too few features are in both. */
 bool Baseline::motion(const std::vector<size_t> &body, const Picture &from, const Picture &to,
                       Pose &pose) const
 {
@@ -200,7 +199,7 @@ bool Baseline::relate(const std::vector<size_t> &a, const std::vector<size_t> &b
     }
     joint.probability = 1.0;
     if (std::abs(greatest.angle) > params_.turn_rad) {
-        /* the centre stays where it is: c = R c + p */
+        /* the centre is fixed: c = R c + p */
         double half = 0.5 / std::tan(0.5 * greatest.angle);
         Vec2 p = greatest.position;
         Vec2 centre{0.5 * p.x - half * p.y, 0.5 * p.y + half * p.x};

@@ -1,15 +1,15 @@
 /*
- * baseline.hpp: the perceptual skill of the paper, as a yardstick (Katz and Brock, "Manipulating
+ * baseline.hpp: the perceptual skill of the paper, as a baseline (Katz and Brock, "Manipulating
  * articulated objects with interactive perception", ICRA 2008).
  *
  * Features whose mutual distance has not changed by more than a threshold are joined by an edge;
- * the connected components of that graph, divided where they hang together by few edges (features
- * beside a joint keep their distances to both links), are the bodies; what is at rest is
- * background. Two bodies are compared in two poses: a relative rotation is a revolute joint about
- * its centre, a translation without rotation is a prismatic joint. It has no idea of noise, and is
- * sure of all it says.
+ * the connected components of that graph, divided where they are connected by few edges (features
+ * near a joint keep their distances to both links), are the bodies; bodies at rest are background.
+ * Two bodies are compared in two poses: a relative rotation is a revolute joint about its centre, a
+ * translation without rotation is a prismatic joint. It has no noise model, and reports every joint
+ * with certainty.
  *
- * Order of calls: one rest after the other, then estimate at any time.
+ * Order of calls: observe one rest after another; estimate at any time.
  */
 #ifndef GRRL_EXPERIMENT_PERCEPTION_BASELINE_HPP
 #define GRRL_EXPERIMENT_PERCEPTION_BASELINE_HPP
@@ -22,11 +22,11 @@ namespace grrl_experiment::perception
 {
 
 struct BaselineParams {
-    double distance_m = 0.003;                /* by which a mutual distance may change */
+    double distance_m = 0.003; /* change of a mutual distance that counts as constant */
     double turn_rad = grrl_sim::radians(5.0); /* more is a rotation */
     double slide_m = 0.004;                   /* more is a translation */
     double near_m = 0.05;                     /* how close joined bodies and their pivot are */
-    int min_features = 4;                     /* fewer are no body */
+    int min_features = 4;                     /* fewer do not make a body */
 };
 
 class Baseline
@@ -34,7 +34,7 @@ class Baseline
 public:
     explicit Baseline(int features) : features_(static_cast<size_t>(features)) {}
 
-    /* The frames of one rest; their medians are one picture. */
+    /* The frames of one rest; their medians form one snapshot. */
     void rest(const std::vector<grrl_sim::Frame> &frames);
 
     Estimate estimate() const;

@@ -1,4 +1,4 @@
-/* figures.hpp: what many trials add up to, as a table, as CSV and as a picture. */
+/* figures.hpp: the results of many trials, as a table, as CSV and as a chart. */
 #ifndef GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
 #define GRRL_EXPERIMENT_PERCEPTION_FIGURES_HPP
 
@@ -19,7 +19,7 @@ struct Group {
     std::vector<TrialResult> trials;
 };
 
-/* In percent; below 0: there is nothing to tell from. */
+/* In percent; below 0: no data. */
 struct Figures {
     double wrong_joint;
     double false_split;
@@ -45,7 +45,7 @@ Pushes pushes(const Group &group);
 void print_table(std::FILE *file, const std::vector<Group> &groups);
 void print_csv(std::FILE *file, const std::vector<Group> &groups);
 
-/* False: gnuplot is not there or fails. */
+/* false: gnuplot is missing or fails. */
 bool draw_svg(const std::string &path, const std::vector<Group> &groups);
 
 } // namespace grrl_experiment::perception

@@ -1,4 +1,4 @@
-/* objects.cpp: the list of objects, and the choice among them. */
+/* objects.cpp: the list of objects, and the selection from it. */
 #include "objects.hpp"
 
 #include <cstdio>
@@ -15,7 +15,7 @@ namespace
 struct Entry {
     const char *name;
     const char *text; /* nullptr: the name is a chain */
-    const char *file; /* or a file of the simulator's */
+    const char *file; /* or a file of the simulator */
 };
 
 const Entry entries[] = {
@@ -46,7 +46,7 @@ Result<ObjectSpec> object_of_file(const char *name)
         }
     }
     return Result<ObjectSpec>::bad(std::string(name) + " is not in " GRRL_OBJECTS_INSTALLED
-                                                       "; give its path instead of its name");
+                                                       "; use its path instead of its name");
 }
 
 Result<ObjectSpec> object_of_name(const std::string &name)

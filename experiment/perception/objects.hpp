@@ -1,4 +1,4 @@
-/* objects.hpp: what perception is measured on, unless the user names other objects. */
+/* objects.hpp: the objects on which perception is measured by default. */
 #ifndef GRRL_EXPERIMENT_PERCEPTION_OBJECTS_HPP
 #define GRRL_EXPERIMENT_PERCEPTION_OBJECTS_HPP
 

@@ -20,7 +20,7 @@ const char *take_noise(void *context, const char *text)
         char *end;
         double level = std::strtod(at, &end);
         if (end == at || (*end != '\0' && *end != ',') || !(level > 0.0 && level <= 100.0))
-            return "numbers above 0 to 100 between commas, such as 1,2";
+            return "numbers above 0 to 100, separated by commas, such as 1,2";
         noise.push_back(level);
         if (*end == '\0')
             return nullptr;
@@ -44,23 +44,23 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
     grrl_sim::TrackerParams &tracker = o.trial.world.tracker;
     const grrl_option rows[] = {
         grrl_option_text("objects", "LIST",
-                         "between semicolons: names below, chains, terms, files (all below)",
+                         "names below, chains, terms or files, separated by semicolons (all)",
                          &o.objects),
         grrl_option_int("trials", "N", "trials for each object and noise level (50)", 1, 1000000,
                         &o.trials),
-        grrl_option_u64("seed", "N", "of the first trial; the next ones count up (1)", 0,
+        grrl_option_u64("seed", "N", "seed of the first trial; the next ones count up (1)", 0,
                         UINT64_MAX - 1000000, &o.seed),
-        grrl_option_call("noise", "LIST", "levels, times the default of 0.7 mm (1,2)", take_noise,
-                         &o.noise),
-        grrl_option_number("dropout", "P", "probability of a feature to be missing in a frame (0)",
+        grrl_option_call("noise", "LIST", "noise levels, in units of the default of 0.7 mm (1,2)",
+                         take_noise, &o.noise),
+        grrl_option_number("dropout", "P", "probability that a feature is missing in a frame (0)",
                            0.0, 1.0, 1.0, &tracker.dropout_probability),
         grrl_option_number("outliers", "P",
-                           "probability of a feature to be elsewhere in a frame (0)", 0.0, 1.0, 1.0,
+                           "probability that a feature is displaced in a frame (0)", 0.0, 1.0, 1.0,
                            &tracker.outlier_probability),
-        grrl_option_int("cap", "N", "pushes after which a trial is given up (100)", 1, 1000000,
+        grrl_option_int("cap", "N", "pushes after which a trial ends unsolved (100)", 1, 1000000,
                         &o.trial.cap),
-        grrl_option_int("jobs", "N", "trials at the same time (1)", 1, 256, &o.jobs),
-        grrl_option_text("csv", "FILE", "write every figure, and the counts it is made of", &o.csv),
+        grrl_option_int("jobs", "N", "number of trials in parallel (1)", 1, 256, &o.jobs),
+        grrl_option_text("csv", "FILE", "write every figure and its counts", &o.csv),
         grrl_option_text("svg", "FILE", "draw the figures (needs gnuplot)", &o.svg),
         grrl_option_flag("quiet", "no progress", &o.quiet),
     };

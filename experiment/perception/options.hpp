@@ -17,7 +17,7 @@ struct Options {
     int trials = 50;
     uint64_t seed = 1;
     int jobs = 1;
-    std::vector<double> noise{1.0, 2.0}; /* times the default */
+    std::vector<double> noise{1.0, 2.0}; /* in units of the default */
     TrialParams trial;
     std::string csv; /* empty: none, like the next */
     std::string svg;
@@ -26,7 +26,7 @@ struct Options {
 
 grrl_options_result parse_options(int argc, char **argv, Options &options);
 
-/* The program as each of its studies describes it; outro says what the study has to choose from. */
+/* Describes one study of the program; completes outro, which lists the choices of that study. */
 grrl_program describe_study(const char *usage, const char *intro, std::string &outro);
 
 } // namespace grrl_experiment::perception

@@ -1,4 +1,4 @@
-/* picture.cpp: the figures as bars, by gnuplot. */
+/* picture.cpp: draws the figures as bars with gnuplot. */
 #include "figures.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string tick(const Group &group)
     return label;
 }
 
-/* A row a group: place, label, then for each panel ours and the baseline's. */
+/* One row per group: position, label, then for each panel ours and the baseline's. */
 std::string data_of(const std::vector<Group> &groups)
 {
     std::ostringstream data;

@@ -9,8 +9,8 @@ namespace grrl_experiment::perception
 namespace
 {
 
-/* The last two vertices of an order in which each next vertex is the one tied most tightly to those
- * before it, and how tightly the last one is tied. */
+/* The last two vertices of an order in which each next vertex is the one most tightly connected to
+ * those before it, and the connectivity of the last one. */
 struct Phase {
     size_t before_last;
     size_t last;

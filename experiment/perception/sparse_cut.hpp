@@ -1,8 +1,8 @@
 /*
- * sparse_cut.hpp: where a graph hangs together by few edges.
+ * sparse_cut.hpp: finds where a graph is held together by few edges.
  *
  * The phases of Stoer and Wagner's minimum cut (1997) propose cuts; the plain minimum would cut off
- * single vertices, so that the one with the fewest edges for its possible ones is taken.
+ * single vertices, so the cut with the smallest share of its possible edges is taken.
  */
 #ifndef GRRL_EXPERIMENT_PERCEPTION_SPARSE_CUT_HPP
 #define GRRL_EXPERIMENT_PERCEPTION_SPARSE_CUT_HPP

@@ -1,4 +1,4 @@
-/* trial.cpp: the course of a trial, and what is counted in it. */
+/* trial.cpp: the course of a trial, and its counts. */
 #include "trial.hpp"
 
 #include <time.h>
@@ -21,9 +21,9 @@ namespace
 {
 
 enum { SIX = 6 };
-constexpr uint64_t push_stream = 99; /* of random numbers: which body, which direction */
+constexpr uint64_t push_stream = 99; /* random stream for the choice of body and direction */
 
-/* Of this thread: other work on the machine is no cost of perception. */
+/* CPU time of this thread: other work on the machine must not count. */
 double cpu_s()
 {
     timespec now{};
@@ -31,7 +31,7 @@ double cpu_s()
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/* The world, the two methods that watch it, and who pushes. */
+/* The world, the two methods that observe it, and the pusher. */
 class Bench
 {
 public:
@@ -79,7 +79,7 @@ void Bench::observe(bool pushing)
     perception_s_ += cpu_s() - start;
 }
 
-/* The pause after a push, and the model that is made of all there was to see. */
+/* The rest after a push, and the resulting model. */
 void Bench::rest()
 {
     std::vector<Frame> frames;
@@ -157,14 +157,14 @@ Tally &Tally::operator+=(const Tally &other)
     return *this;
 }
 
-/* The trial ends when the library is right; up to six pushes it goes on for the figure that asks
- * what was known after six, and for nothing else. */
+/* The trial ends when the library is right; it continues up to six pushes only for the figure about
+ * the state after six. */
 TrialResult run_trial(const ObjectSpec &object, const TrialParams &params, uint64_t seed)
 {
     Bench bench(object, params, seed);
     TrialResult result;
     bool ended = false;
-    bool moved_so_far = false; /* every joint, enough */
+    bool moved_so_far = false; /* every joint has moved enough */
     bool moved_in_six = false;
     bool exact_when_moved[METHODS] = {false, false};
     bool exact_in_six[METHODS] = {false, false};

@@ -1,4 +1,4 @@
-/* verdict.cpp: joints, links and features, each against the truth. */
+/* verdict.cpp: compares joints, links and features with the truth. */
 #include "verdict.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace
 
 constexpr double sure_probability = 0.95;
 
-/* As the supervisor sees it: the structures are isomorphic. */
+/* The supervisor's criterion: the structures are isomorphic. */
 bool is_exact(const Estimate &estimate, const World &world)
 {
     grrl_graph graph;

@@ -1,4 +1,4 @@
-/* verdict.hpp: how right an estimate is, the same for every method of perception. */
+/* verdict.hpp: how accurate an estimate is, the same for every method of perception. */
 #ifndef GRRL_EXPERIMENT_PERCEPTION_VERDICT_HPP
 #define GRRL_EXPERIMENT_PERCEPTION_VERDICT_HPP
 
@@ -8,14 +8,14 @@ namespace grrl_experiment::perception
 {
 
 struct Verdict {
-    bool wrong_joint = false;  /* a joint where there is none, or of the other type */
-    bool false_split = false;  /* a body that is a part of a link, or the table's */
+    bool wrong_joint = false;  /* a joint where there is none, or of the wrong type */
+    bool false_split = false;  /* a body that is part of a link, or of the table */
     bool missed_joint = false; /* the estimate lacks some joint */
-    bool exact = false;        /* links and joints are as in truth */
-    int features = 0;          /* seen, on links that have a body, or on the table */
-    int misplaced = 0;         /* of these in another body than they should be */
-    int sure = 0;              /* joints with a probability of at least 0.95 .. */
-    int sure_and_right = 0;    /* .. and those which are */
+    bool exact = false;        /* links and joints match the truth */
+    int features = 0;          /* visible, on links that have a body, or on the table */
+    int misplaced = 0;         /* of these, in the wrong body */
+    int sure = 0;              /* joints with a probability of at least 0.95 ... */
+    int sure_and_right = 0;    /* ... and those that are right */
 };
 
 Verdict judge(const Estimate &estimate, const grrl_sim::World &world);

@@ -1,4 +1,4 @@
-/* camera.cpp: a pinhole above the table, and what moves it. */
+/* camera.cpp: a pinhole camera above the table, and its motion. */
 #include "camera.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-/* camera.hpp: from the table to the picture, for cameras that stand, move and lean. */
+/* camera.hpp: from the table to the image, for stationary, moving and tilted cameras. */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_CAMERA_HPP
 #define GRRL_EXPERIMENT_RECORDINGS_CAMERA_HPP
 
@@ -12,7 +12,7 @@ class View
 public:
     View(const Conditions &conditions, uint64_t seed);
 
-    /* Where a point of the table is at a time, in the unit of the recording. */
+    /* The position of a point of the table at a time, in the unit of the recording. */
     grrl_sim::Vec2 project(grrl_sim::Vec2 table_m, double t) const;
     bool in_picture(grrl_sim::Vec2 p) const;
 
@@ -20,7 +20,7 @@ private:
     double width_px_;
     double per_metre_;
     double tilt_rad_ = 0.0;
-    double focal_ = 3.0; /* in widths of the picture */
+    double focal_ = 3.0; /* in image widths */
     double distance_m_;
     Wave pan_x_px_, pan_y_px_, turn_rad_, shake_x_px_, shake_y_px_;
     Ramp roll_rad_;

@@ -1,4 +1,4 @@
-/* figures.cpp: what many recordings add up to. */
+/* figures.cpp: the results of many recordings. */
 #include "figures.hpp"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ void add(const Outcome &outcome, Kind kind, Figures &f)
     f.ms += outcome.ms;
     f.missed += {score.missed, score.joints};
     if (kind == Kind::MECHANISM) {
-        f.right += {score.right, 1};
+        if (score.joints > 0) /* else there was nothing to be told */
+            f.right += {score.right, 1};
         f.mechanism_false += {false_called, 1};
     } else if (kind == Kind::INDEPENDENT) {
         f.independent_called += {false_called, 1};
@@ -68,7 +69,7 @@ std::string with_interval(const Share &share)
     return text;
 }
 
-/* The figures that a release is held to, with intervals, and calibration. */
+/* The figures that a release must meet, with intervals, and the calibration. */
 void print_summary(std::FILE *file, const Figures *f)
 {
     const struct {

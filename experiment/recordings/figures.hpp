@@ -10,7 +10,7 @@
 namespace grrl_experiment::recordings
 {
 
-/* Of joints by their probability. */
+/* Joints by their probability. */
 struct Bin {
     const char *name;
     double low;
@@ -28,7 +28,7 @@ struct Share {
     int part = 0;
     int of = 0;
     Share &operator+=(const Share &other);
-    double percent() const;    /* below 0: of nothing */
+    double percent() const;    /* below 0: no data */
     Interval interval() const; /* Wilson's 95%, in percent */
 };
 
@@ -39,16 +39,16 @@ struct Figures {
     Share mechanism_false;
     Share missed;             /* of all true joints */
     Share independent_right;  /* bodies right and no joint */
-    Share independent_called; /* recordings with a joint at .5 and above .. */
-    Share independent_sure;   /* .. and at .95 */
+    Share independent_called; /* recordings with a joint of at least .5 ... */
+    Share independent_sure;   /* ... and of at least .95 */
     Share hand;               /* right structure */
-    Share bodies;             /* right ones, of all recordings */
+    Share bodies;             /* recordings with all bodies right */
     Share calibration[BINS];
     double error = 0.0; /* sums */
     double ms = 0.0;
 };
 
-/* Empty: of all conditions, of all objects. */
+/* Empty: all conditions, all objects. */
 Figures figures(const std::vector<Result> &results, Method method, const std::string &conditions,
                 const std::string &object);
 

@@ -19,7 +19,7 @@ struct Level {
 
 struct Axis {
     std::string name;
-    std::vector<Level> levels; /* the first is the usual one, but among objects */
+    std::vector<Level> levels; /* the first is the usual one, except for objects */
 };
 
 template <typename T> Level level(const std::string &name, T Conditions::*field, T value)
@@ -94,7 +94,7 @@ Choice usual()
     return choice;
 }
 
-/* Empty, or what is wrong. */
+/* An empty text or an error message. */
 std::string choose(const std::string &part, Choice &choice)
 {
     size_t equals = part.find('=');
@@ -120,7 +120,7 @@ std::string choose(const std::string &part, Choice &choice)
     return choice[at].empty() ? name + "=: a level is missing: " + names_of(axis) : "";
 }
 
-/* All combinations, the objects turning fastest. */
+/* All combinations; the objects vary fastest. */
 void cross(const Choice &choice, std::vector<Cell> &cells)
 {
     size_t n = 1;

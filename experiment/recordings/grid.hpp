@@ -1,5 +1,5 @@
 /*
- * grid.hpp: which conditions a study has.
+ * grid.hpp: the conditions of a study.
  *
  * An axis (objects, camera, tracks, points, rate, size) has levels, the first of which is the usual
  * one. Without a choice each axis is varied alone, for all objects.
@@ -16,7 +16,7 @@
 namespace grrl_experiment::recordings
 {
 
-/* Recordings that are alike but for the seed. */
+/* Recordings that differ only in the seed. */
 struct Cell {
     std::string conditions; /* "usual", "camera=roll", "camera=roll,rate=3" */
     const NamedObject *object;
@@ -24,9 +24,10 @@ struct Cell {
 };
 
 /*
- * Axes between semicolons, each with its levels or alone, for all: "camera=roll,zoom; objects=R".
- * Axes that are named are crossed; the others stay as usual, but for the objects: all. A moving or
- * leaning camera needs pictures, so that it is not crossed with sizes in mm or m.
+ * Axes separated by semicolons, each with its levels or alone for all of them: "camera=roll,zoom;
+ * objects=R". The named axes are crossed; the others keep their usual level, except that all
+ * objects take part. A moving or tilted camera needs images, so it is not crossed with sizes in mm
+ * or m.
  */
 grrl_sim::Result<std::vector<Cell>> make_grid(const std::string &text);
 

@@ -1,4 +1,4 @@
-/* joint_error.cpp: least squares over all pivots and all axes. */
+/* joint_error.cpp: least-squares residuals over all pivots and all axes. */
 #include "joint_error.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ Sums spread(const std::vector<Vec2> &points)
     return sums;
 }
 
-/* Across the main axis of the points. */
+/* The residual across the main axis of the points. */
 double error_of_a_line(const std::vector<Vec2> &points)
 {
     Sums sums = spread(points);
@@ -44,8 +44,8 @@ double error_of_a_line(const std::vector<Vec2> &points)
 }
 
 /*
- * A point p of b stays where it is in a: with the means taken away, the sum of |(R - mean R) p + t
- * - mean t|^2 is least. R - mean R is a scaled rotation, so that the normal equations are diagonal.
+ * A point p of b is fixed in a: without the means, it minimises the sum of |(R - mean R) p + t -
+ * mean t|^2. R - mean R is a scaled rotation, so the normal equations are diagonal.
  */
 void error_of_a_pivot(const std::vector<Pose> &poses, JointErrors &errors)
 {
@@ -70,7 +70,7 @@ void error_of_a_pivot(const std::vector<Pose> &poses, JointErrors &errors)
     errors.reach_m = length(g) / h;
 }
 
-/* Angles from one to the next, so that they may exceed half a turn. */
+/* Angles accumulated from one pose to the next, so that they may exceed half a turn. */
 double spread_of_turns(const std::vector<Pose> &poses)
 {
     std::vector<Vec2> turns;

@@ -1,4 +1,4 @@
-/* joint_error.hpp: how far relative poses are from those that a joint allows. */
+/* joint_error.hpp: how far relative poses deviate from those that a joint allows. */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_JOINT_ERROR_HPP
 #define GRRL_EXPERIMENT_RECORDINGS_JOINT_ERROR_HPP
 
@@ -12,7 +12,7 @@ namespace grrl_experiment::recordings
 /* Root mean squares over the poses. */
 struct JointErrors {
     double pivot_m;  /* from the best pivot */
-    double reach_m;  /* how far that pivot is from the second body's origin */
+    double reach_m;  /* distance of that pivot from the origin of the second body */
     double line_m;   /* across the best axis */
     double turn_rad; /* about the mean angle: an axis has none */
 };

@@ -1,4 +1,4 @@
-/* json.cpp: JSON by recursive descent. */
+/* json.cpp: parses JSON by recursive descent. */
 #include "json.hpp"
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-/* json.hpp: a reader of JSON, for what grrl-perceive prints. */
+/* json.hpp: a JSON reader for the output of grrl-perceive. */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_JSON_HPP
 #define GRRL_EXPERIMENT_RECORDINGS_JSON_HPP
 
@@ -14,14 +14,14 @@ namespace grrl_experiment::recordings
 struct Json {
     std::string text;
     double number = 0.0;
-    std::vector<Json> items;        /* of an array, and the values of an object .. */
-    std::vector<std::string> names; /* .. whose names are these */
+    std::vector<Json> items;        /* of an array, and the values of an object ... */
+    std::vector<std::string> names; /* ... with these names */
 
-    /* An empty value where there is no such name. */
+    /* An empty value if there is no such name. */
     const Json &operator[](const std::string &name) const;
 };
 
-/* Nothing: it is no JSON. Escapes in texts are kept as they are. */
+/* Empty if the text is not JSON. Escapes in texts are kept as they are. */
 std::optional<Json> read_json(const std::string &text);
 
 } // namespace grrl_experiment::recordings

@@ -17,13 +17,13 @@ namespace
 
 enum { GROUP = 3, ROUNDS = 3, LEAST_BODY = 4 };
 
-constexpr double pose_numbers = 3.0; /* of a pose in the plane */
+constexpr double pose_numbers = 3.0; /* parameters of a pose in the plane */
 
-constexpr double max_sigmas = 3.0; /* of a distance that does not change */
+constexpr double max_sigmas = 3.0; /* for a constant distance */
 
 using Rows = std::vector<size_t>;
 
-/* A body's pose in a picture, if two of its points and more are seen. */
+/* The pose of a body in a frame, if at least two of its points are visible. */
 struct Placed {
     bool known = false;
     Pose pose;
@@ -34,7 +34,7 @@ struct Placed {
 struct Fit {
     std::vector<Vec2> shape; /* of each row of the body */
     std::vector<Placed> placed;
-    double cost = 0.0; /* squared residuals over sigma^2, and the poses' share of the BIC */
+    double cost = 0.0; /* squared residuals over sigma^2, plus the poses' share of the BIC */
 };
 
 class Merging
@@ -65,8 +65,8 @@ private:
     double log_n_;
 };
 
-/* How much the distance of two tracks varies, in sigmas, and a little of how far they are; infinite
- * where it varies more than noise does, or they are hardly seen together. */
+/* How much the distance of two tracks varies, in sigmas, plus a small share of the distance itself;
+ * infinite if it varies more than noise, or if they are hardly ever visible together. */
 double Merging::variation(size_t a, size_t b) const
 {
     double n = 0.0, sum = 0.0, squares = 0.0;
@@ -84,7 +84,8 @@ double Merging::variation(size_t a, size_t b) const
     return sd > max_sigmas ? HUGE_VAL : sd + 0.02 * sum / n / sigma_m_;
 }
 
-/* Each track with the two that vary least to it, as long as there are free ones. */
+/* Groups each track with the two whose distance to it varies least, as long as there are free ones.
+ */
 std::vector<Rows> Merging::groups() const
 {
     size_t n = pictures_.id.size();
@@ -143,7 +144,7 @@ void Merging::place(const Rows &rows, Fit &fit) const
     }
 }
 
-/* Each point of the shape is the mean of where the poses put it; one that no pose tells stays. */
+/* Each point of the shape is the mean of its positions by the poses; a point without any stays. */
 void Merging::reshape(const Rows &rows, Fit &fit) const
 {
     for (size_t i = 0; i < rows.size(); i++) {
@@ -174,7 +175,7 @@ Fit Merging::fit(const Rows &rows) const
             most = n;
         }
     }
-    for (size_t row : rows) { /* one that is not seen there begins where it is seen first */
+    for (size_t row : rows) { /* one not visible there starts where it is first visible */
         Vec2 at = pictures_.places[best][row].at_m;
         for (size_t f = 0; f < pictures_.places.size() && !pictures_.places[best][row].seen; f++) {
             if (pictures_.places[f][row].seen) {
@@ -184,7 +185,7 @@ Fit Merging::fit(const Rows &rows) const
         }
         fit.shape.push_back(at);
     }
-    Vec2 centre; /* the body's origin, so that a place says little of an angle */
+    Vec2 centre; /* the body's origin, so that position and angle are nearly uncorrelated */
     for (Vec2 at : fit.shape)
         centre = centre + (1.0 / static_cast<double>(rows.size())) * at;
     for (Vec2 &at : fit.shape)
@@ -210,7 +211,7 @@ Fit Merging::fit(const Rows &rows) const
     return fit;
 }
 
-/* The pair whose merger lowers the BIC most, as long as there is one. */
+/* Merges the pair that lowers the BIC most, as long as there is one. */
 void Merging::merge(std::vector<Rows> &bodies) const
 {
     auto joined = [](const Rows &a, const Rows &b) {
@@ -256,12 +257,12 @@ void Merging::merge(std::vector<Rows> &bodies) const
     }
 }
 
-/* The BIC of three models of the relative poses: no joint (three numbers a picture), a pivot or an
- * axis (one number a picture and four, or three, of the joint). False: independent is best. */
+/* The BIC of three models of the relative poses: no joint (three parameters per frame), a pivot or
+ * an axis (one parameter per frame, and four or three for the joint). false: no joint is best. */
 bool Merging::relate(const Fit &a, const Fit &b, EstimatedJoint &joint) const
 {
     std::vector<Pose> poses;
-    double arm_n = 0.0, angle_n = 0.0; /* variances over sigma^2: of a place, of an angle */
+    double arm_n = 0.0, angle_n = 0.0; /* variances over sigma^2: of a position, of an angle */
     for (size_t f = 0; f < a.placed.size(); f++) {
         const Placed &in_a = a.placed[f];
         const Placed &in_b = b.placed[f];

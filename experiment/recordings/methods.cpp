@@ -1,4 +1,4 @@
-/* methods.cpp: recordings as each method wants them, and its answers as estimates. */
+/* methods.cpp: converts recordings to the input of each method, and its answers to estimates. */
 #include "methods.hpp"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ std::string read_all(std::FILE *file)
     return text;
 }
 
-/* Status, or -1: it could not be run. */
+/* The exit status; -1: it could not be run. */
 int run(std::vector<std::string> command, std::FILE *input, std::FILE *output, std::FILE *errors)
 {
     std::vector<char *> argv;
@@ -100,7 +100,7 @@ const char *unit_name(Unit unit)
     return unit == Unit::PX ? "px" : unit == Unit::MM ? "mm" : "m";
 }
 
-/* Those that are in most of the frames, in a mixed order: ids go body by body. */
+/* The tracks visible in most of the frames, in a mixed order, since ids go body by body. */
 std::vector<int32_t> longest(const Recording &recording, const std::vector<size_t> &frames,
                              size_t most)
 {

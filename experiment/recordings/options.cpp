@@ -12,16 +12,17 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
     Options &o = options;
     const grrl_option rows[] = {
         grrl_option_text("grid", "AXES",
-                         "axes to cross, between semicolons, such as\n"
+                         "axes to cross, separated by semicolons, such as\n"
                          "'camera=roll,zoom; objects=R,two' (each axis alone)",
                          &o.grid),
         grrl_option_int("count", "N", "recordings in each cell of the grid (5)", 1, 1000000,
                         &o.count),
-        grrl_option_u64("seed", "N", "of the first recording of a cell; the next ones count up (1)",
-                        0, UINT64_MAX - 1000000, &o.seed),
-        grrl_option_text("program", "PATH", "the grrl-perceive to measure (the one beside this)",
-                         &o.program),
-        grrl_option_int("jobs", "N", "recordings at the same time (1)", 1, 256, &o.jobs),
+        grrl_option_u64("seed", "N",
+                        "seed of the first recording of a cell; the next ones count up (1)", 0,
+                        UINT64_MAX - 1000000, &o.seed),
+        grrl_option_text("program", "PATH",
+                         "the grrl-perceive to measure (the one next to this program)", &o.program),
+        grrl_option_int("jobs", "N", "number of recordings in parallel (1)", 1, 256, &o.jobs),
         grrl_option_text("csv", "FILE", "write a row for each recording and method", &o.csv),
         grrl_option_text("svg", "FILE", "draw the figures (needs gnuplot)", &o.svg),
         grrl_option_text("write", "FOLDER", "write the recordings, for grrl-perceive", &o.folder),

@@ -1,4 +1,4 @@
-/* picture.cpp: the figures as bars, and calibration, by gnuplot. */
+/* picture.cpp: draws the figures as bars, and the calibration, with gnuplot. */
 #include <algorithm>
 #include <sstream>
 
@@ -13,7 +13,7 @@ namespace
 
 const char *const colours[METHODS] = {"#0072b2", "#bbbbbb", "#e69f00"};
 
-/* A row for each of the conditions: place, label, then for each panel the methods' percentages. */
+/* One row per condition: position, label, then for each panel the percentages of the methods. */
 std::string data_of(const std::vector<Result> &results)
 {
     std::ostringstream data;

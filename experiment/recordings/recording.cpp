@@ -1,4 +1,4 @@
-/* recording.cpp: points on bodies, seen through a camera by a tracker that has its flaws. */
+/* recording.cpp: points on bodies, seen by a camera and an imperfect tracker. */
 #include "recording.hpp"
 
 #include <algorithm>
@@ -18,18 +18,19 @@ using grrl_sim::Vec2;
 namespace
 {
 
+constexpr int least_points = 4; /* of a body that can be told */
 constexpr double duration_s = 4.0;
 constexpr double missing = 0.03;       /* of all points in a frame */
 constexpr double sliding_share = 0.25; /* of a link's points, along edges */
 constexpr double frozen_share = 0.15;  /* of all points */
 
-/* A feature of a body and the track that has it now. */
+/* A feature of a body and its current track. */
 struct Feature {
     size_t body = 0;
-    bool below = false;   /* on the ground: bodies hide it */
+    bool below = false;   /* on the ground, where bodies hide it */
     Vec2 place_m;         /* in the body */
-    double slide_m = 0.0; /* along the body's x axis in the whole time */
-    double begin = 0.0;   /* of its track: times from 0 to 1 */
+    double slide_m = 0.0; /* along the body's x axis over the whole time */
+    double begin = 0.0;   /* of its track, on a time scale from 0 to 1 */
     double end = 1.0;
     double freezes = 2.0;
     int32_t id = -1; /* no track yet */
@@ -38,8 +39,8 @@ struct Feature {
 };
 
 /*
- * Points in a rectangle, none too near another: corner detectors keep a distance. Of several
- * candidates the one farthest from all so far is taken (Mitchell, 1991).
+ * Points in a rectangle, none too close to another: corner detectors keep a distance. Of several
+ * candidates the one farthest from all others is taken (Mitchell, 1991).
  */
 std::vector<Vec2> spread_points(Random &random, int count, double half_length, double half_width)
 {
@@ -86,7 +87,7 @@ std::vector<Feature> place_features(const Scene &scene, int points, Random &rand
     return features;
 }
 
-/* What is wrong with the tracks. */
+/* Applies the imperfections of the tracks. */
 void spoil(Tracks tracks, const Scene &scene, std::vector<Feature> &features, Random &random)
 {
     size_t one = 1 + static_cast<size_t>(random.below(static_cast<int>(scene.bodies.size()) - 1));
@@ -118,6 +119,16 @@ void spoil(Tracks tracks, const Scene &scene, std::vector<Feature> &features, Ra
     }
 }
 
+/* Whether no motion could tell a joint. In a picture something that slides on the ground without a
+ * turn may as well go straight on its own, as `crossing` does; only the way back tells. On a table
+ * what lies side by side is joined. And a link with fewer points than a body needs is none. */
+bool is_open(const Joint &joint, const Conditions &conditions)
+{
+    bool slides_once = joint.type == GRRL_PRISMATIC && joint.ramps.size() == 1;
+    return conditions.points < least_points ||
+           (conditions.size.unit == Unit::PX && joint.a == 0 && slides_once);
+}
+
 double standard_noise(const Conditions &conditions)
 {
     const Size &size = conditions.size;
@@ -139,6 +150,8 @@ public:
         recording_.unit = conditions.size.unit;
         recording_.bodies = static_cast<int>(scene.bodies.size());
         recording_.joints = scene.joints;
+        for (const Joint &joint : scene.joints)
+            recording_.open.push_back(is_open(joint, conditions));
         recording_.noise = standard_noise(conditions);
     }
 
@@ -191,7 +204,7 @@ private:
         return (recording_.unit == Unit::MM ? 1000.0 : 1.0) * table_m;
     }
 
-    /* By a body, or by the frame of a door on the ground. */
+    /* Whether a body, or the frame of a door on the ground, hides it. */
     bool is_covered(const std::vector<Placed> &placed, Vec2 table_m) const
     {
         for (size_t b = 0; b < placed.size(); b++) {

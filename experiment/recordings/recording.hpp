@@ -1,6 +1,6 @@
 /*
- * recording.hpp: a scene as a camera and a tracker of points make it a table of tracks, with the
- * truth of each point.
+ * recording.hpp: a scene as a table of tracks from a camera and a point tracker, with the truth for
+ * each point.
  */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_RECORDING_HPP
 #define GRRL_EXPERIMENT_RECORDINGS_RECORDING_HPP
@@ -18,15 +18,15 @@ enum class Camera { FIXED, PAN, ROLL, ZOOM, SHAKE, TILT15, TILT30, PERSPECTIVE }
 enum class Tracks { WHOLE, LATE, EARLY, RENEWED, EDGES, FROZEN };
 enum class Unit { PX, MM, M };
 
-/* The world's size, and the unit and width of the pictures. */
+/* The size of the world, and the unit and width of the images. */
 struct Size {
     const char *name;
     Unit unit;
     double link_m;
-    double picture_px; /* wide; 0: no pictures, positions on the table */
+    double picture_px; /* width; 0: no images, positions on the table */
 };
 
-/* What a recording is like. */
+/* The conditions of a recording. */
 struct Conditions {
     Object object = Object::R;
     Camera camera = Camera::FIXED;
@@ -43,26 +43,28 @@ struct Seen {
     double y;
 };
 
-/* Of a track. */
+/* The truth about a track. */
 struct TrackTruth {
     int body;
-    bool judged; /* false: it leaves its body, nobody can say where it belongs */
+    bool judged; /* false: it leaves its body, so it belongs nowhere */
 };
 
 struct Recording {
     Unit unit = Unit::PX;
     std::vector<std::vector<Seen>> frames;
     std::vector<TrackTruth> tracks; /* by id */
-    int bodies = 0;                 /* with the ground, body 0 */
+    int bodies = 0;                 /* including the ground, body 0 */
     std::vector<Joint> joints;
+    std::vector<bool> open;         /* of the joints: no motion tells them from none */
     double noise = 0.0; /* standard deviation of a point, in the unit */
 };
 
-/* Four seconds. The object, its motion and the camera are those of the seed, whatever the tracks.
+/* Four seconds. The object, its motion and the camera depend only on the seed, whatever the tracks.
  */
 Recording record(const Conditions &conditions, uint64_t seed);
 
-/* As grrl-perceive reads it; with the true body of each point in a column that it does not read. */
+/* Writes it for grrl-perceive, with the true body of each point in a column that it does not read.
+ */
 std::string csv_of(const Recording &recording);
 
 } // namespace grrl_experiment::recordings

@@ -1,4 +1,4 @@
-/* scene.cpp: draws of scenes, and where their bodies are at a time. */
+/* scene.cpp: random scenes, and the poses of their bodies over time. */
 #include "scene.hpp"
 
 #include <cmath>
@@ -17,10 +17,10 @@ using grrl_sim::Vec2;
 namespace
 {
 
-/* Of a link's length; what two bodies without a joint are off every joint, at least. */
+/* Share of a link's length by which two bodies without a joint must deviate from any joint. */
 constexpr double least_error = 0.04;
 
-/* When a hand touches a lever: it comes, it pushes, it goes. */
+/* When a hand approaches, pushes and leaves a lever. */
 constexpr double touches_at = 0.3;
 constexpr double lets_go_at = 0.7;
 
@@ -61,7 +61,7 @@ void move_freely(Random &random, Body &body, double size_m, double turn_rad)
     body.turn_rad = draw_wave(random, turn_rad);
 }
 
-/* A value that moves by `range` within the given time, a quarter of them back again. */
+/* A value that changes by `range` within the given time; a quarter of them change back. */
 std::vector<Ramp> draw_ramps(Random &random, double begin, double end, double range)
 {
     double size = draw_sign(random) * range;
@@ -73,8 +73,8 @@ std::vector<Ramp> draw_ramps(Random &random, double begin, double end, double ra
     return {{begin, middle, size}, {middle, end, -size * random.uniform(0.6, 1.0)}};
 }
 
-/* A joint between the last two bodies. It moves by 20 degrees or 10% of a link at least, also while
- * a link is seen late or early. */
+/* A joint between the last two bodies. It moves by at least 20 degrees or 10% of a link, even if a
+ * link is visible only late or early. */
 void join(Random &random, Scene &scene, int a, grrl_joint_type type)
 {
     Joint joint;
@@ -111,7 +111,7 @@ void make_chain(Random &random, Scene &scene, std::initializer_list<grrl_joint_t
     }
 }
 
-/* A link on the ground, which has points beside the joint. */
+/* A link on the ground, which has points near the joint. */
 void make_grounded(Random &random, Scene &scene, grrl_joint_type type)
 {
     scene.bodies[0] = draw_link(random, scene.link_m);
@@ -153,7 +153,7 @@ void make_nearer(Random &random, Scene &scene)
     scene.bodies.push_back(body);
 }
 
-/* A lever on the ground, and a hand that turns it, lets go and leaves straight. */
+/* A lever on the ground, and a hand that turns it, lets go and leaves in a straight line. */
 void make_hand(Random &random, Scene &scene)
 {
     make_grounded(random, scene, GRRL_REVOLUTE);
@@ -227,8 +227,8 @@ bool joined(const Scene &scene, size_t a, size_t b)
     return false;
 }
 
-/* The least RMS error of one pivot and of one axis for the motion of b in a; an angle counts at
- * half a link. */
+/* The smaller RMS error of the best pivot and the best axis for the motion of b in a; angles are
+ * converted at half a link's length. */
 double error_of_a_joint(const Scene &scene, size_t a, size_t b)
 {
     std::vector<Pose> poses;
@@ -241,7 +241,7 @@ double error_of_a_joint(const Scene &scene, size_t a, size_t b)
                     std::hypot(errors.line_m, 0.5 * scene.link_m * errors.turn_rad));
 }
 
-/* Whether all stays in the picture, the corners of each body included. */
+/* Whether everything stays in the image, including the corners of each body. */
 bool is_in_view(const Scene &scene)
 {
     for (int i = 0; i < 25; i++) {
@@ -261,7 +261,7 @@ bool is_in_view(const Scene &scene)
     return true;
 }
 
-/* Whether only joints look like joints. */
+/* Whether no pair without a joint looks joined. */
 bool is_clear(const Scene &scene)
 {
     if (!is_in_view(scene))

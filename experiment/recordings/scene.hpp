@@ -1,10 +1,10 @@
 /*
- * scene.hpp: what moves in a synthetic recording, and how: links, joints, independent bodies.
+ * scene.hpp: the moving things in a synthetic recording: links, joints, independent bodies.
  *
- * Body 0 is the ground. A scene is a function of the time from 0 to 1, whatever a camera makes of
- * it. Links that no joint ties never look as if one did: a draw in which a single pivot or a single
- * axis explains their relative motion is drawn again (but for a body that crosses straight, a thing
- * that comes nearer, and a hand on a lever, which are there because they come close to it).
+ * Body 0 is the ground. A scene is a function of time from 0 to 1, independent of the camera. Links
+ * without a joint never look joined: a scene in which a single pivot or a single axis explains
+ * their relative motion is drawn again (except for a body that crosses in a straight line, a thing
+ * that approaches, and a hand on a lever, whose purpose is to look nearly joined).
  */
 #ifndef GRRL_EXPERIMENT_RECORDINGS_SCENE_HPP
 #define GRRL_EXPERIMENT_RECORDINGS_SCENE_HPP
@@ -19,12 +19,12 @@
 namespace grrl_experiment::recordings
 {
 
-/* The part of the table that is seen, in links; a scene stays within it. */
+/* The visible part of the table, in link lengths; a scene stays within it. */
 constexpr double table_links[2] = {3.4, 1.9};
 
 enum class Object { R, P, RR, RP, DOOR, DRAWER, TWO, THREE, FOUR, CROSSING, NEARER, HAND };
 
-/* What the figures of an object count to. */
+/* The group in which an object is counted. */
 enum class Kind { MECHANISM, INDEPENDENT, HAND };
 
 struct NamedObject {
@@ -35,7 +35,7 @@ struct NamedObject {
 };
 const std::vector<NamedObject> &all_objects();
 
-/* From 0 at its begin to its size at its end, smoothly. */
+/* Smooth transition from 0 at its begin to its size at its end. */
 struct Ramp {
     double begin = 0.0;
     double end = 1.0;
@@ -51,23 +51,24 @@ struct Wave {
     double at(double t) const;
 };
 
-/* A rectangle and its motion. Its place without a joint: start, moved by waves and ramps. */
+/* A rectangle and its motion. Without a joint its pose is start, moved by waves and ramps. */
 struct Body {
     double half_length_m = 0.0;
     double half_width_m = 0.0;
     grrl_sim::Pose start;
     Wave x_m, y_m, turn_rad;
     Ramp cross_x_m, cross_y_m;
-    Ramp growth;          /* of its picture's scale: it comes nearer */
-    bool carried = false; /* a hand: with the end of the lever while it touches it */
+    Ramp growth;          /* of its scale in the image: it approaches */
+    bool carried = false; /* a hand: moves with the end of the lever while touching it */
 };
 
-/* Of a body to one with a smaller index. */
+/* A joint to a body with a smaller index. */
 struct Joint {
     int a = 0;
     int b = 1;
     grrl_joint_type type = GRRL_REVOLUTE;
-    grrl_sim::Vec2 at_a_m; /* the pivot in either body; for a prismatic joint the place of b in a */
+    grrl_sim::Vec2
+        at_a_m; /* the pivot in each body; for a prismatic joint the position of b in a */
     grrl_sim::Vec2 at_b_m;
     double angle_rad = 0.0;  /* of b in a at rest */
     std::vector<Ramp> ramps; /* of the joint's value; the axis is the x axis of a */

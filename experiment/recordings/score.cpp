@@ -1,4 +1,4 @@
-/* score.cpp: bodies by majorities, joints by the bodies they are between. */
+/* score.cpp: matches bodies by majority, and joints by their bodies. */
 #include "score.hpp"
 
 #include <algorithm>
@@ -9,10 +9,11 @@ namespace grrl_experiment::recordings
 namespace
 {
 
-constexpr double max_error = 0.1;      /* of the tracks of a right answer in a wrong body */
+constexpr double max_error = 0.1;      /* of the tracks in a wrong body, for a right answer */
 constexpr double least_assigned = 0.5; /* of the tracks of a moving body */
 
-/* How the tracks of each true body lie in the bodies of the answer; the last column is none. */
+/* Number of tracks of each true body in each body of the answer; the last column counts those in
+ * none. */
 class Table
 {
 public:
@@ -46,7 +47,7 @@ public:
         return best;
     }
 
-    /* The body of the answer that has most of a true one; no_link: none has any. */
+    /* The body of the answer with most tracks of a true one; no_link: none has any. */
     size_t link_of(size_t body) const
     {
         auto end = count_[body].end() - 1;
@@ -67,8 +68,8 @@ public:
         return in_body > 0 ? static_cast<double>(wrong) / in_body : 0.0;
     }
 
-    /* One body of the answer for each that moves, and most of it assigned. The ground may be one
-     * body; in metres several: anything on a table may be an object. */
+    /* Whether each moving body is one body of the answer with most of its tracks. The ground may be
+     * one body; in metres several, since anything on a table may be an object. */
     bool right(bool in_metres) const
     {
         std::vector<int> times(bodies_, 0);
@@ -103,21 +104,27 @@ Score score(const Recording &recording, const Estimate &estimate)
     score.bodies = estimate.links;
     score.bodies_right = table.right(recording.unit != Unit::PX);
     score.error = table.error();
-    score.joints = static_cast<int>(recording.joints.size());
+    score.joints =
+        static_cast<int>(std::count(recording.open.begin(), recording.open.end(), false));
     std::vector<EstimatedJoint> joints = estimate.joints;
     std::stable_sort(joints.begin(), joints.end(),
                      [](const auto &a, const auto &b) { return a.probability > b.probability; });
-    std::vector<bool> known(recording.joints.size(), false);
+    std::vector<bool> known = recording.open; /* nobody misses those */
     for (const EstimatedJoint &joint : joints) {
         int a = table.true_body(static_cast<size_t>(joint.a));
         int b = table.true_body(static_cast<size_t>(joint.b));
         bool right = false;
+        bool open = false;
         for (size_t i = 0; i < known.size() && !right; i++) {
             const Joint &truth = recording.joints[i];
-            right = !known[i] && truth.a == std::min(a, b) && truth.b == std::max(a, b) &&
-                    static_cast<int>(truth.type) == joint.type;
+            bool is_it = truth.a == std::min(a, b) && truth.b == std::max(a, b) &&
+                         static_cast<int>(truth.type) == joint.type;
+            open = open || (is_it && recording.open[i]);
+            right = is_it && !known[i];
             known[i] = known[i] || (right && joint.probability >= called_probability);
         }
+        if (open)
+            continue; /* a guess, and it happens to be so */
         score.called.push_back({joint.probability, right});
         score.false_called += !right && joint.probability >= called_probability;
         score.false_sure += !right && joint.probability >= sure_probability;

@@ -1,12 +1,8 @@
-/* study.cpp: all recordings of a grid, by all methods, in several threads. */
+/* study.cpp: runs all methods on all recordings of a grid, in several threads. */
 #include "study.hpp"
 
-#include <atomic>
-#include <cerrno>
-#include <cstring>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include <unistd.h>
 
@@ -21,7 +17,7 @@ namespace
 
 enum { EXIT_FINE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
 
-/* grrl-perceive where it is installed or built, or the one in $PATH. */
+/* grrl-perceive next to this program or in the build tree, or the one in $PATH. */
 std::string program_beside_us()
 {
     char self[4096];
@@ -44,33 +40,16 @@ public:
     {
     }
 
-    /* Empty, or what went wrong. */
+    /* An empty text or an error message. */
     std::string run()
     {
-        auto all = static_cast<int64_t>(results_.size());
-        Progress progress(all, all, "recordings");
-        auto work = [&] {
-            for (size_t i = next_++; i < results_.size(); i = next_++) {
-                std::string wrong = try_one(i);
-                std::lock_guard<std::mutex> lock(mutex_);
-                if (!wrong.empty()) {
-                    wrong_ = wrong;
-                    next_ = results_.size();
-                }
-                progress.trial(0);
-                progress.part();
-                if (!options_.quiet)
-                    progress.show();
-            }
+        auto try_next = [&](size_t i) {
+            std::string wrong = try_one(i);
+            std::lock_guard<std::mutex> lock(mutex_);
+            wrong_ = wrong.empty() ? wrong_ : wrong;
+            return wrong.empty() ? 0 : -1;
         };
-        std::vector<std::thread> threads;
-        for (int i = 1; i < options_.jobs; i++)
-            threads.emplace_back(work);
-        work();
-        for (std::thread &thread : threads)
-            thread.join();
-        if (!options_.quiet)
-            progress.finish();
+        run_parallel(results_.size(), options_.jobs, options_.quiet, "recordings", try_next);
         return wrong_;
     }
 
@@ -81,7 +60,7 @@ private:
     {
         try {
             return one(i);
-        } catch (const std::runtime_error &error) { /* a file */
+        } catch (const std::runtime_error &error) { /* from a file */
             return error.what();
         }
     }
@@ -110,8 +89,7 @@ private:
     std::string program_;
     size_t count_;
     std::vector<Result> results_;
-    std::atomic<size_t> next_{0};
-    std::mutex mutex_; /* of progress and wrong_ */
+    std::mutex mutex_; /* of wrong_ */
     std::string wrong_;
 };
 
@@ -124,18 +102,10 @@ int fail(const std::string &what)
 int report(const Options &options, const std::vector<Result> &results)
 {
     print_table(stdout, results);
-    if (!options.csv.empty()) {
-        std::FILE *file = std::fopen(options.csv.c_str(), "w");
-        if (file != nullptr)
-            print_csv(file, results);
-        bool good = file != nullptr && std::ferror(file) == 0;
-        if (file == nullptr || std::fclose(file) != 0 || !good)
-            return fail(options.csv + ": " + std::strerror(errno));
-    }
-    if (!options.svg.empty() && !draw_svg(options.svg, results))
-        return fail(options.svg +
-                    ": gnuplot failed; is it installed, and can the file be written?");
-    return EXIT_FINE;
+    bool good = write_outputs(
+        "grrl-evaluate", options.csv, [&](std::FILE *file) { print_csv(file, results); },
+        options.svg, [&] { return draw_svg(options.svg, results); });
+    return good ? EXIT_FINE : EXIT_FAILED;
 }
 
 } // namespace

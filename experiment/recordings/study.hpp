@@ -19,7 +19,7 @@ struct Options {
     int count = 5;    /* recordings in each cell */
     uint64_t seed = 1;
     int jobs = 1;
-    std::string program; /* empty: the grrl-perceive beside this program */
+    std::string program; /* empty: the grrl-perceive next to this program */
     std::string csv;     /* empty: none, like the next two */
     std::string svg;
     std::string folder;
@@ -43,7 +43,7 @@ struct Result {
 void print_table(std::FILE *file, const std::vector<Result> &results);
 void print_csv(std::FILE *file, const std::vector<Result> &results);
 
-/* False: gnuplot is not there or fails. */
+/* false: gnuplot is missing or fails. */
 bool draw_svg(const std::string &path, const std::vector<Result> &results);
 
 /* The whole program; its exit status. */

@@ -75,22 +75,22 @@ void add_joints(nb::dict &dict, const grrl_model &model, double per_metre)
 }
 
 /* Those that no joint ties. */
-void add_pairs(nb::dict &dict, const grrl_perception &perception, const grrl_model &model)
+void add_pairs(nb::dict &dict, const grrl_report &report)
 {
+    const grrl_model &model = *report.model;
     std::vector<int32_t> ends, relation;
     std::vector<double> p;
     nb::list reason;
     for (int a = 0; a < model.n_bodies; a++) {
         for (int b = a + 1; b < model.n_bodies; b++) {
-            grrl_pair pair{};
-            pair.relation = GRRL_RELATION_UNDETERMINED;
-            (void)!grrl_perception_pair(&perception, static_cast<uint8_t>(a),
+            grrl_pair pair{}; /* undetermined */
+            (void)!grrl_perception_pair(report.perception, static_cast<uint8_t>(a),
                                         static_cast<uint8_t>(b), &pair);
             if (pair.relation == GRRL_RELATION_JOINED)
                 continue;
             ends.insert(ends.end(), {a, b});
             relation.push_back(pair.relation);
-            reason.append(grrl_report_reason(&pair));
+            reason.append(grrl_report_reason(&report, &pair).text);
             for (float x : {pair.p_revolute, pair.p_prismatic, pair.p_disconnected})
                 p.push_back(static_cast<double>(x));
         }
@@ -178,14 +178,19 @@ std::string term_of(const grrl_model &model, float large_m)
 }
 
 nb::dict model_dict(const grrl_perception &perception, const grrl_model &model, float large_m,
-                    double per_metre)
+                    double per_metre, const char *unit)
 {
+    grrl_report report{};
+    report.model = &model;
+    report.perception = &perception;
+    report.unit = unit;
+    report.per_metre = per_metre;
     nb::dict dict;
     dict["term"] = term_of(model, large_m);
     add_bodies(dict, model, per_metre);
     add_frames(dict, model);
     add_joints(dict, model, per_metre);
-    add_pairs(dict, perception, model);
+    add_pairs(dict, report);
     add_features(dict, model, per_metre);
     return dict;
 }

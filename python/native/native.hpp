@@ -58,9 +58,9 @@ nb::ndarray<nb::numpy, T> array_of(std::vector<T> values, std::vector<size_t> sh
 /* The term of a model. */
 std::string term_of(const grrl_model &model, float large_m);
 
-/* Everything perception believes as a dictionary of arrays; lengths times per_metre. */
+/* Everything perception believes as a dictionary of arrays; lengths times per_metre, in unit. */
 nb::dict model_dict(const grrl_perception &perception, const grrl_model &model, float large_m,
-                    double per_metre);
+                    double per_metre = 1.0, const char *unit = "m");
 
 /* RuntimeError or ValueError for a status that is not GRRL_OK. */
 void must(grrl_status status, const char *what);

@@ -226,8 +226,8 @@ nb::dict answer_of(const Run &run, bool with_motion)
 {
     const grrl_report &report = run.run->report;
     const grrl_tracks &all = run.tracks.all;
-    nb::dict dict =
-        model_dict(*report.perception, *report.model, GRRL_RUN_LARGE_M, report.per_metre);
+    nb::dict dict = model_dict(*report.perception, *report.model, GRRL_RUN_LARGE_M,
+                               report.per_metre, report.unit);
     nb::dict counts = counts_dict(*report.counts);
     counts["beyond_capacity"] = all.left_out.n_points + report.counts->overflow;
     counts["empty"] = all.lost.empty;
@@ -244,7 +244,7 @@ nb::dict answer_of(const Run &run, bool with_motion)
     dict["warnings"] = warnings;
     size_t joints = report.model->n_joints;
     if (with_motion)
-        dict["motion"] = array_of(motion_of(report), {joints, all.n_frames});
+        dict["motion"] = array_of(motion_of(run.run->upright), {joints, all.n_frames});
     return dict;
 }
 
@@ -354,7 +354,8 @@ public:
     {
         const grrl_model &model = *grrl_perception_model(perception_.get());
         double per_metre = 1.0 / metres_of(unit_);
-        nb::dict dict = model_dict(*perception_, model, GRRL_RUN_LARGE_M, per_metre);
+        nb::dict dict = model_dict(*perception_, model, GRRL_RUN_LARGE_M, per_metre,
+                                   grrl_unit_scale(unit_, false).name);
         dict["counts"] = counts_dict(perception_->counts);
         dict["noise"] = static_cast<double>(perception_->config.noise_m) * per_metre;
         return dict;

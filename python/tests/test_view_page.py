@@ -371,23 +371,20 @@ def test_live_run_goes_on_for_a_browser_that_comes_late(browser, log, tmp_path):
 
 
 def test_on_the_bus():
-    """The tests of bus_* in a network where LCM works."""
+    """The functions bus_*, in a network where LCM works."""
     pytest.importorskip("lcm")
     done = subprocess.run([ROOT / "tools" / "network", sys.executable, "-m", "pytest", "-p",
-                           "no:cacheprovider", "-s", __file__, "-k", "bus_"], capture_output=True,
-                          text=True, timeout=600, check=False, cwd=ROOT / "python",
-                          env={**os.environ, "GRRL_VIEW_BUS": "1"})
+                           "no:cacheprovider", "-s", "-o", "python_functions=bus_*", __file__],
+                          capture_output=True, text=True, timeout=600, check=False, cwd=ROOT / "python")
     print(done.stdout)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "2 passed" in done.stdout
 
 
-on_bus = pytest.mark.skipif("GRRL_VIEW_BUS" not in os.environ, reason="test_on_the_bus runs it")
 URL = "udpm://239.255.76.67:7922?ttl=0"
 
 
-@on_bus
-def test_bus_shows_a_run(browser, tmp_path):
+def bus_shows_a_run(browser, tmp_path):
     viewer = Viewer("--live", "--lcm-url", URL)
     try:
         browser.open(viewer.url)
@@ -408,8 +405,7 @@ def test_bus_shows_a_run(browser, tmp_path):
         assert viewer.stop() == 0
 
 
-@on_bus
-def test_bus_delay(browser):
+def bus_delay(browser):
     """How long a frame at 30 Hz takes from the bus to the canvas; printed, for a busy machine is slow."""
     import lcm
 

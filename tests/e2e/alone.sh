@@ -64,5 +64,5 @@ tells trial 'without a supervisor send trial_id 0'
 tells rest 'the phase has been REST for 2 s'
 tells millimetres 'are they millimetres?'
 tells ids 'the ids change from frame to frame'
-tells slow 'frames a second, it needs 10 to 100'
+tells slow 'frames per second; it needs 10 to 100'
 exit 0

@@ -17,7 +17,7 @@ refused() {
 refused 2 "$AGENT" --polcy learn
 refused 2 "$AGENT" --policy lern
 refused 2 "$AGENT" --alpha 0.2
-grep -q -e '--alpha goes with --policy paper' err.txt || fail "--alpha 0.2: $(cat err.txt)"
+grep -q -e '--alpha needs --policy paper' err.txt || fail "--alpha 0.2: $(cat err.txt)"
 refused 2 "$AGENT" --policy random --store random.store
 grep -q 'the policy random does not learn' err.txt || fail "random: $(cat err.txt)"
 refused 2 "$AGENT" --policy paper --alpha 0
@@ -109,7 +109,7 @@ echo "not a store at all, but a letter" >letter.store
 kept letter.store
 refused 1 "$AGENT" --lcm-url "$URL" --store good.store --experiences 1
 refused 1 "$AGENT" --lcm-url "$URL" --store good.store --policy paper # learn's
-grep -q 'another policy learned it' err.txt || fail "another policy: $(cat err.txt)"
+grep -q 'it belongs to another policy' err.txt || fail "another policy: $(cat err.txt)"
 
 # A signal is a clean end.
 start agent "$AGENT" --lcm-url "$URL" --store good.store

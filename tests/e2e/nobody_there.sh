@@ -27,4 +27,4 @@ start agent2 "$AGENT" --lcm-url "$URL"
 timeout 60 "$SIM" --lcm-url "$URL" --object RR --dropout 1 >blind.txt 2>&1
 [ $? = 1 ] || fail "a run in which nothing is seen did not end with 1"
 grep -q 'finds nothing to push' blind.txt || fail "the simulator does not say why it ends"
-grep -q 'no link is seen that could be pushed' agent2.txt || fail "the agent does not tell"
+grep -q 'no link is visible that could be pushed' agent2.txt || fail "the agent does not tell"

@@ -24,13 +24,13 @@ until_true "there are no results" grep -q '^2,' r.csv
 start agent2 "$AGENT" --lcm-url "$URL" --seed 6 --store second.store --tracker-timeout 2
 agent2=$LAST
 until_true "the second agent does not wait" \
-    grep -q 'another agent is obeyed, this one waits' agent2.txt
+    grep -q 'another agent is in control and this one waits' agent2.txt
 start sim2 "$SIM" --lcm-url "$URL" --object RR --trials 1 --agent-timeout 2
 sim2=$LAST
 finish "$sim" grrl-sim
 finish "$agent" grrl-agent
 same clean.store first.store
-grep -q 'another simulator or tracker sends here' agent.txt || fail "the agent tells of no rival"
+grep -q 'another simulator or tracker is sending' agent.txt || fail "the agent tells of no rival"
 # Now the two that are left find each other or time out: both end by themselves, and say why.
 wait "$agent2" || grep -q 'no simulator or tracker for 2 s' agent2.txt || fail "the second agent"
 wait "$sim2" || grep -q 'no agent for 2 s' sim2.txt || fail "the second simulator"

@@ -19,7 +19,7 @@ enum {
     EXPERIENCE = 26,
     CASES_HEADER = 20,
     LOG_ODDS = 4,
-    CASE = GRRL_CONTEXT_PARTS + 14,
+    CASE = 24,
     COUNT_AT = 12
 };
 

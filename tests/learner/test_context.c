@@ -147,11 +147,70 @@ static void what_was_tried_is_remembered_until_the_link_changes(void **state)
     assert_int_equal(contexts[2].part[GRRL_CONTEXT_TRIED], 0);
 }
 
+static void a_key_holds_a_whole_context(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++) {
+        for (unsigned value = 0; value <= grrl_context_max[i]; value++) {
+            struct grrl_context a = {{0}};
+            struct grrl_context b = {{0}};
+            struct grrl_context back;
+            for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
+                a.part[part] = b.part[part] = (uint8_t)(part % (grrl_context_max[part] + 1u));
+            b.part[i] = (uint8_t)value;
+            uint32_t key = grrl_context_key(&b);
+            grrl_context_of_key(key, &back);
+            assert_memory_equal(&back, &b, sizeof b);
+            unsigned differ = a.part[i] != b.part[i];
+            uint32_t all = grrl_context_key_bits((1u << GRRL_CONTEXT_PARTS) - 1u);
+            uint32_t other = all & ~grrl_context_key_bits((uint16_t)(1u << i));
+            assert_int_equal(grrl_context_differences(grrl_context_key(&a), key, all), differ);
+            assert_int_equal(grrl_context_differences(grrl_context_key(&a), key, other), 0);
+        }
+    }
+    struct grrl_context least = {{0}};
+    struct grrl_context most;
+    memcpy(most.part, grrl_context_max, sizeof most.part);
+    assert_int_equal(
+        grrl_context_differences(grrl_context_key(&least), grrl_context_key(&most), UINT32_MAX),
+        GRRL_CONTEXT_PARTS);
+}
+
+/* A single body whose features thin out ahead. */
+static void the_shape_of_an_unmoved_body_counts(void **state)
+{
+    (void)state;
+    struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
+    struct grrl_context contexts[GRRL_DIRECTIONS];
+    grrl_attempts_update(&attempts, &model, LARGE_M);
+    describe(&model, 0, contexts);
+    assert_int_equal(contexts[0].part[GRRL_CONTEXT_SKEW], 0); /* joints are known */
+    model.n_bodies = 1;
+    model.n_joints = 0;
+    model.n_features = 4;
+    for (uint8_t i = 0; i < 4; i++) {
+        static const float x_m[] = {0.02f, 0.02f, 0.02f, 0.14f};
+        model.feature_body[i] = 0;
+        model.feature_m[i] = (struct grrl_vec2){x_m[i], i % 2 == 0 ? 0.01f : -0.01f};
+    }
+    static const float width_m[] = {0.02f, 0.05f, 0.09f};
+    for (uint8_t aspect = 0; aspect < 3; aspect++) {
+        model.body[0].width_m = width_m[aspect];
+        describe(&model, 0, contexts);
+        assert_int_equal(contexts[0].part[GRRL_CONTEXT_ASPECT], aspect);
+        assert_int_equal(contexts[0].part[GRRL_CONTEXT_SKEW], 2);
+        assert_int_equal(contexts[3].part[GRRL_CONTEXT_SKEW], 1);
+        assert_int_equal(contexts[2].part[GRRL_CONTEXT_SKEW], 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_context_says_what_is_around_the_link, set_up),
         cmocka_unit_test_setup(an_object_may_be_turned_and_mirrored, set_up),
+        cmocka_unit_test_setup(a_key_holds_a_whole_context, set_up),
+        cmocka_unit_test_setup(the_shape_of_an_unmoved_body_counts, set_up),
         cmocka_unit_test_setup(what_was_tried_is_remembered_until_the_link_changes, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

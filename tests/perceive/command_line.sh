@@ -80,6 +80,26 @@ expect 1 'No such file' --svg "$WORK/no/folder.svg" "$WORK/hinge.csv"
 
 expect 2 'picture.PNG: must be a file for SVG' --svg picture.PNG "$WORK/hinge.csv"
 
+# what camera and motion left open is said: a tilted table, a drawer pulled once, a link of two points
+awk 'BEGIN { srand(3); print "frame,point,x_px,y_px"
+    for (f = 0; f <= 40; f++) for (i = 0; i < 40; i++) {
+        if (i < 24) { x = (i % 6) * 200; y = int(i / 6) * 150 }
+        else if (i < 38) { x = 300 + (i % 7) * 40 + 3 * f; y = 200 + 60 * (i > 30) }
+        else { x = 900 - 3 * f; y = 90 + 40 * (i - 38) + 2 * f }
+        printf "%d,%d,%.2f,%.2f\n", f, i, x + rand(), y + rand() } }' >"$WORK/drawer.csv"
+expect 0 'undetermined (.*: slid once, which independent motion explains as well' "$WORK/drawer.csv"
+expect 0 'warning: 2 points move with no body: links of fewer than 4 points' "$WORK/drawer.csv"
+awk 'BEGIN { srand(4); print "frame,point,x_px,y_px"
+    for (f = 0; f <= 60; f++) for (i = 0; i < 54; i++) {
+        if (i < 30) { x = (i % 6 - 2.5) * 200; y = (int(i / 6) - 2) * 160 }
+        else { u = (i % 12) * 30; v = i % 2 * 70 - 35; a = 1.4 * f / 60
+            x = u * cos(a) - v * sin(a) - 100; y = u * sin(a) + v * cos(a) - 60 }
+        s = 2600 / (2600 + 0.5 * y)
+        printf "%d,%d,%.2f,%.2f\n", f, i, 640 + s * x + rand() - 0.5, 360 + s * 0.866 * y + rand() - 0.5 } }' \
+    >"$WORK/tilted.csv"
+expect 0 'warning: the camera looks at the plane from [23].* degrees aside: undone' "$WORK/tilted.csv"
+expect 0 '^D(lb, R(L(l, f1), L(l, f2)))$' "$WORK/tilted.csv"
+
 # how the joints move: 40.1 and 30 in 60 frames
 expect 0 '^D(lb, R(' --motion "$WORK/hinge_motion.csv" "$WORK/hinge.csv"
 expect 0 '^D(lb, P(' --unit mm --motion "$WORK/slide_motion.csv" "$WORK/slide.csv"

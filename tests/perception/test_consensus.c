@@ -225,6 +225,19 @@ static void slow_seed(int seed, int k0, bool *group)
     }
 }
 
+/* Whether a group is seen twice in half of the chosen keyframes at least: else nothing follows. */
+static bool is_told(const bool *group, int k0)
+{
+    int told = 0;
+    for (int c = 0; c < n_chosen; c++) {
+        int seen = 0;
+        for (int i = 0; i < scene.n_slots; i++)
+            seen += group[i] && both_see(k0, chosen[c], i);
+        told += chosen[c] != k0 && seen >= 2;
+    }
+    return 2 * told >= n_chosen;
+}
+
 static int size_of(const bool *group)
 {
     int n = 0;
@@ -248,19 +261,22 @@ static int slow_find(bool *largest)
         if (scene.keyframe[k0].weight[slots[s]] == 0)
             continue;
         slow_seed(slots[s], k0, group);
+        int before = size_of(group);
         for (int round = 0; round < 3 && size_of(group) >= 3; round++) {
+            before = size_of(group);
             for (int i = 0; i < n_slots; i++) {
                 double cost = slow_cost(group, slots[i], k0);
-                grown[slots[i]] = cost >= 0.0 && cost <= 3.5;
+                grown[slots[i]] = cost >= 0.0 && cost <= 3.5 && is_told(group, k0);
             }
             memcpy(group, grown, sizeof group);
         }
-        if (size_of(group) > best) {
-            best = size_of(group);
+        int stable = size_of(group) < before ? size_of(group) : before;
+        if (stable > best) {
+            best = stable;
             memcpy(largest, group, sizeof group);
         }
     }
-    return best;
+    return size_of(largest);
 }
 
 /* Whether both found the same. A residual at the limit may fall to either side. */
@@ -279,6 +295,16 @@ static bool check_find(void)
     return found == expected && memcmp(slow, fast, sizeof fast) == 0;
 }
 
+/* Features next to one another that are lost early. */
+static void lose_some(int n)
+{
+    int first = scene_int(0, n - 1);
+    int from = scene_int(1, scene.n_keyframes);
+    for (int k = from; k < scene.n_keyframes; k++)
+        for (int i = first; i < n && i < first + 5; i++)
+            scene.keyframe[k].weight[i] = 0;
+}
+
 static void largest_sets_of_random_bodies(void **state)
 {
     (void)state;
@@ -288,6 +314,8 @@ static void largest_sets_of_random_bodies(void **state)
         int n = scene_int(3, 24);
         make_two_in_one(n, scene_int(0, n / 2), scene_int(1, 20), scene_uniform(0.9, 1.5),
                         scene_uniform(0.0, 0.004), scene_uniform(0.0, 0.1));
+        if (run % 2 == 1)
+            lose_some(n);
         same += check_find();
     }
     print_message("%d of 200 the same\n", same);

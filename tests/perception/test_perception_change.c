@@ -337,39 +337,30 @@ static void assert_publishable(const struct grrl_model *model)
     }
 }
 
-static bool has_number(const struct grrl_model *model, uint16_t number)
-{
-    for (int b = 0; b < model->n_bodies; b++)
-        if (model->body[b].number == number)
-            return true;
-    return false;
-}
-
-/* Twice the noise that perception was told of, and gaps: bodies are parted by chance. In the last
- * push all features of body 5 go to its neighbours, when another body dissolves. */
-static void a_body_that_loses_its_features_leaves_the_model(void **state)
+/* Twice the noise that perception was told of, and gaps: bodies are parted by chance, and lose
+ * their features to others. */
+static void whatever_is_believed_can_be_published(void **state)
 {
     (void)state;
     struct grrl_perception_config config;
     grrl_perception_config_default(&config);
-    assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
     const struct grrl_model *model = grrl_perception_model(&perception);
-    world_init(&world, 3094);
-    world.noise_m *= 2.0f;
-    world_add_chain(&world, "PP", -0.4f, 0.0f);
-    world_shuffle_ids(&world);
-    world.missing = 0.3f;
-    world_rest(&world, &perception, 10);
-    assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
-    const bool thins = GRRL_MAX_KEYFRAMES < 48; /* fewer keyframes tell another story */
-    for (int i = 0; i < 7; i++) {
-        int link = 1 + (int)grrl_random_below(&world.random, 2);
-        float by = world_uniform(&world, 0.001f, 0.015f);
-        assert_true(i < 6 || has_number(model, 5) || thins);
-        move_one(link, world.q[link] > 0.0f ? -by : by);
-        assert_publishable(model);
+    for (uint64_t seed = 3080; seed < 3110; seed++) {
+        assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+        world_init(&world, seed);
+        world.noise_m *= 2.0f;
+        world_add_chain(&world, "PP", -0.4f, 0.0f);
+        world_shuffle_ids(&world);
+        world.missing = 0.3f;
+        world_rest(&world, &perception, 10);
+        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+        for (int i = 0; i < 7; i++) {
+            int link = 1 + (int)grrl_random_below(&world.random, 2);
+            float by = world_uniform(&world, 0.001f, 0.015f);
+            move_one(link, world.q[link] > 0.0f ? -by : by);
+            assert_publishable(model);
+        }
     }
-    assert_true(!has_number(model, 5) || thins);
 }
 
 int main(void)
@@ -381,7 +372,7 @@ int main(void)
         cmocka_unit_test(features_that_join_late_find_their_body),
         cmocka_unit_test(features_that_vanish_come_back),
         cmocka_unit_test(reused_ids_are_other_features),
-        cmocka_unit_test(a_body_that_loses_its_features_leaves_the_model),
+        cmocka_unit_test(whatever_is_believed_can_be_published),
         cmocka_unit_test(order_of_features_and_bodies_does_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

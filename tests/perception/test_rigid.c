@@ -397,7 +397,6 @@ static void places_and_costs(void **state)
             assert_at(local, slow, TOLERANCE_M);
             double cost = 0.0;
             int n = 0;
-            float cap = (float)scene_uniform(1.0, 30.0);
             for (int k = 0; k < scene.n_keyframes; k++) {
                 int w = scene.keyframe[k].weight[i];
                 if (w > 0 && slow_poses[k].weight > 0.0) {
@@ -407,15 +406,21 @@ static void places_and_costs(void **state)
                         noise_square() * (1.0 / slow_poses[k].weight +
                                           square(point_of(local)) / (2.0 * slow_poses[k].inertia));
                     double d2 = square(miss) / (variance_of(w) + pose_variance);
-                    cost += fmin(d2, (double)cap);
+                    cost += fmin(d2, (double)GRRL_COST_CAP);
                     n++;
                 }
             }
             uint16_t count = 77;
             float fast = grrl_rigid_cost(&scene, i, local, &scene.pose[0][body], GRRL_MAX_LINKS,
-                                         cap, &count);
+                                         GRRL_COST_ANY, &count);
             assert_int_equal(count, n);
             assert_near(fast, cost, 2e-3);
+            float enough = (float)scene_uniform(0.0, 1.5) * fast;
+            count = 77;
+            float given_up = grrl_rigid_cost(&scene, i, local, &scene.pose[0][body], GRRL_MAX_LINKS,
+                                             enough, &count);
+            assert_true(fast > enough ? given_up > enough && count == 77
+                                      : given_up == fast && count == n);
         }
     }
 }

@@ -82,7 +82,7 @@ void a_second_agent_learns_nothing_and_changes_nothing(void **)
         Outcome outcome = run(setup);
         assert_same(expected, outcome);
         assert_int_equal(outcome.rival_lessons, 0);
-        assert_true(told(outcome, "another agent is obeyed, this one waits"));
+        assert_true(told(outcome, "another agent is in control and this one waits"));
         assert_true(told(outcome, "another agent answers too"));
     }
 }
@@ -108,7 +108,7 @@ void a_second_simulator_changes_nothing(void **)
     Outcome outcome = run(setup);
     assert_same(expected, outcome);
     assert_true(outcome.bus.lost > 0);
-    assert_true(told(outcome, "another simulator or tracker sends here"));
+    assert_true(told(outcome, "another simulator or tracker is sending"));
 }
 
 /* Longer than the other side takes for a restart, and in the middle of the run. */
@@ -182,7 +182,7 @@ void a_scene_without_points_stops_the_run(void **)
         Outcome outcome = run(setup);
         assert_true(outcome.blind);
         assert_true(outcome.trials.empty());
-        assert_true(told(outcome, "no link is seen that could be pushed"));
+        assert_true(told(outcome, "no link is visible that could be pushed"));
     }
 }
 

@@ -29,21 +29,21 @@ refuses 2 "no input"
 refuses 2 "one input only" --camera 1 film.avi
 refuses 2 "must be a number from 0.01 to 100" --scale 0 film.avi
 refuses 2 "must be PX,PY=X,Y" --points "1,2 3,4" film.avi
-refuses 2 "must be four points or more, not 2" --points "1,2=0,0 3,4=1,1" film.avi
-refuses 2 "one way from pixels to metres" --scale 1 --calibration x film.avi
+refuses 2 "must be at least four points, not 2" --points "1,2=0,0 3,4=1,1" film.avi
+refuses 2 "only one of --scale, --points and --calibration" --scale 1 --calibration x film.avi
 refuses 2 "points on LCM are in metres" --lcm
 refuses 2 "as in 9x6x25" --calibrate 9x6 film.avi
 refuses 1 "there is no camera 97" --camera 97
 refuses 1 "film.avi: No such file" film.avi
 mkdir folder
-refuses 1 "there is no picture in this folder" folder
+refuses 1 "there are no images in this folder" folder
 echo "this is text" >text.avi
 refuses 1 "codec to decode it is missing" text.avi
 cp text.avi folder/1.png
-refuses 1 "no picture that can be read" folder
-refuses 1 "no calibration" --calibration text.avi "$SOURCE/examples/arm.mp4"
+refuses 1 "not a readable image" folder
+refuses 1 "not a calibration" --calibration text.avi "$SOURCE/examples/arm.mp4"
 refuses 1 "no checkerboard with 9 x 6" --calibrate 9x6x25 --calibration c "$SOURCE/examples/arm.mp4"
-refuses 1 "no video can be written there" --draw none/x.avi "$SOURCE/examples/arm.mp4"
+refuses 1 "cannot write a video there" --draw none/x.avi "$SOURCE/examples/arm.mp4"
 
 # Tracks of a film of ours, drawn: the film is as long as it was, and the points are those again.
 "$VIDEO" RR 1 1 film.avi >/dev/null || fail "track_video"

@@ -179,7 +179,7 @@ static void a_calibration_is_kept(void **)
     Table other;
     assert_non_null(std::strstr(other.load(path, {320, 240}).c_str(), "320 x 240"));
     assert_int_equal(ftruncate(file, 60), 0);
-    assert_non_null(std::strstr(other.load(path, size).c_str(), "no calibration"));
+    assert_non_null(std::strstr(other.load(path, size).c_str(), "not a calibration"));
     assert_false(other.known());
     (void)close(file);
     (void)unlink(path);

@@ -5,7 +5,7 @@ import unittest
 
 import grrl
 from grrl_mujoco import wire
-from grrl_mujoco.node import MOST_LOOKS, MOST_UNJUDGED, REST_FRAMES_TO_SETTLE, Node
+from grrl_mujoco.node import MAX_LOOKS, MAX_UNJUDGED, REST_FRAMES_TO_SETTLE, Node
 from grrl_mujoco.objects import parse_object
 
 PLANT, AGENT, OTHER = 11, 22, 33
@@ -217,7 +217,7 @@ class Protocol(unittest.TestCase):
         self.make()
         self.start_trial()
         self.model(0, [], n_links=0)
-        for look in range(MOST_LOOKS + 1):
+        for look in range(MAX_LOOKS + 1):
             self.assertFalse(self.node.agent_is_blind, look)
             self.command()
             if not self.node.agent_is_blind:
@@ -226,7 +226,7 @@ class Protocol(unittest.TestCase):
 
     def test_an_agent_without_a_model_stalls_nothing(self):
         self.make()
-        for n in range(MOST_UNJUDGED):
+        for n in range(MAX_UNJUDGED):
             self.assertFalse(self.node.agent_is_mute)
             self.start_trial()
             for _ in range(13):

@@ -27,8 +27,6 @@
 
 #define FEW_FRAMES 3 /* as many as in a keyframe of a push */
 
-#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
-
 static float at_most(float x, float cap)
 {
     return x < cap ? x : cap;
@@ -109,8 +107,8 @@ static void include_noise(const struct grrl_perception *p, const struct grrl_per
                           struct grrl_apart_range *range)
 {
     float noise2 = p->config.noise_m * p->config.noise_m;
-    float turn =
-        noise2 * (1.0f / (a->inertia + LEAST_INERTIA) + 1.0f / (b->inertia + LEAST_INERTIA));
+    float turn = noise2 * (1.0f / (a->inertia + GRRL_LEAST_INERTIA) +
+                           1.0f / (b->inertia + GRRL_LEAST_INERTIA));
     float shift = noise2 * (1.0f / a->weight + 1.0f / b->weight) +
                   0.25f * turn * grrl_vec2_dot(between, between);
     range->turn_var = turn > range->turn_var ? turn : range->turn_var;

@@ -21,6 +21,9 @@
  * standard deviations (of 2 each) of the two residuals of one keyframe. */
 #define ELSEWHERE_COST 8.0f
 
+/* More than rounding adds to the sum of a cost and its limit. */
+#define ROUNDING_COST 0.01f
+
 /* The cost over n keyframes above which a feature does not belong; the margin is relatively larger
  * for few keyframes. */
 static float cost_limit(const struct grrl_perception *p, uint16_t n)
@@ -104,45 +107,68 @@ static bool stays_close(const struct grrl_perception *p, uint16_t slot)
     return sum < limit2 * n;
 }
 
-/* The cost of a feature in a body above the limit; false: it cannot belong to it. */
-static bool excess_in(const struct grrl_perception *p, uint16_t slot, uint8_t body, float *excess)
+static uint16_t keyframes_that_saw(const struct grrl_perception *p, uint16_t slot)
+{
+    uint16_t n = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        n = (uint16_t)(n + (p->keyframe[k].weight[slot] > 0 ? 1 : 0));
+    return n;
+}
+
+/* A body that a feature may belong to, and the feature's cost there above the limit. */
+struct candidate {
+    uint8_t body; /* GRRL_FEATURE_NONE: above the limit in every body tried */
+    float excess;
+};
+
+/*
+ * Replaces the best body so far if the feature costs less in this one; of equals the first stays.
+ * max_limit is the limit for all keyframes that saw the feature: a sum that exceeds the best with
+ * it is not finished.
+ */
+static void try_body(const struct grrl_perception *p, uint16_t slot, uint8_t body, float max_limit,
+                     struct candidate *best)
 {
     bool is_own = body == p->body_of[slot];
     struct grrl_vec2 local = p->shape[slot];
-    uint16_t n;
+    uint16_t n = 0;
     if (!is_own && (!may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
                     !grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local)))
-        return false;
-    float cost =
-        grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
-    *excess = cost - cost_limit(p, n) - (is_own ? OWN_COST : 0.0f);
-    return n > 0;
+        return;
+    float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
+    float cost = grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, enough, &n);
+    if (n == 0)
+        return;
+    float excess = cost - cost_limit(p, n) - (is_own ? OWN_COST : 0.0f);
+    if (excess < best->excess ||
+        (excess == best->excess && body < best->body && best->body != GRRL_FEATURE_NONE))
+        *best = (struct candidate){body, excess};
 }
 
 bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body)
 {
     struct grrl_vec2 local;
-    uint16_t n;
+    uint16_t n = 0;
     if (!grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local))
         return false;
     float cost =
-        grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_CAP, &n);
+        grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_ANY, &n);
     return n >= 2 && cost < cost_limit(p, n);
 }
 
 uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
 {
     uint8_t own = p->body_of[slot];
-    uint8_t best = GRRL_FEATURE_NONE;
-    float best_excess = 0.0f; /* above the limit: unassigned */
+    struct candidate cheapest = {GRRL_FEATURE_NONE, 0.0f};
     bool is_table = own == GRRL_FEATURE_BACKGROUND && p->blob_of[slot] == 0;
-    for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) { /* the table moves with nothing */
-        float excess;
-        if (excess_in(p, slot, b, &excess) && excess < best_excess) {
-            best = b;
-            best_excess = excess;
-        }
-    }
+    float max_limit = cost_limit(p, keyframes_that_saw(p, slot));
+    /* Its own body first: it is most often the best, and the others are then given up early. */
+    if (own < p->n_bodies)
+        try_body(p, slot, own, max_limit, &cheapest);
+    for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) /* the table moves with nothing */
+        if (b != own)
+            try_body(p, slot, b, max_limit, &cheapest);
+    uint8_t best = cheapest.body;
     if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, slot))
         best = own;
     if (!p->has_moved[slot] && (p->blob_of[slot] == 0 || best == GRRL_FEATURE_NONE))
@@ -156,10 +182,10 @@ uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
  */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own)
 {
-    uint16_t n;
+    uint16_t n = 0;
     uint8_t own = p->body_of[slot];
     float own_cost = grrl_rigid_cost(p, slot, p->shape[slot], &p->pose[0][own], GRRL_MAX_LINKS,
-                                     GRRL_COST_CAP, &n);
+                                     GRRL_COST_ANY, &n);
     float leverage = 1.5f / (float)n_own;
     float allowed = own_cost + ELSEWHERE_COST +
                     2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
@@ -167,8 +193,7 @@ bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, 
         struct grrl_vec2 local;
         if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
             grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
-            grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, GRRL_COST_CAP, &n) <=
-                allowed)
+            grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, allowed, &n) <= allowed)
             return true;
     }
     return false;

@@ -31,6 +31,7 @@ void grrl_bodies_add(struct grrl_perception *p)
 
 static void fit_body(struct grrl_perception *p, uint8_t body)
 {
+    p->is_assigned = false;
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t n = grrl_rigid_slots(p, body, slots);
     grrl_rigid_fit(p, slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS);
@@ -45,6 +46,7 @@ static void fit_all(struct grrl_perception *p)
 /* Removes a body from the list; it must have no features left. */
 static void remove_body(struct grrl_perception *p, uint8_t body)
 {
+    p->is_assigned = false;
     for (uint16_t i = 0; i < p->n_slots; i++)
         if (p->body_of[i] > body && p->body_of[i] < p->n_bodies)
             p->body_of[i]--;
@@ -83,24 +85,35 @@ static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uin
            grrl_structure_turn_as_one(p, a, b);
 }
 
+/* Refits only bodies that lost or gained features: the fit of the others would be the same. */
 static bool reassign_once(struct grrl_perception *p)
 {
-    bool changed = false;
+    bool changed[GRRL_MAX_LINKS] = {false};
+    bool any = false;
     for (uint16_t i = 0; i < p->n_slots; i++) {
+        uint8_t was = p->body_of[i];
         uint8_t best = grrl_assign_best(p, i);
-        changed = changed || p->body_of[i] != best;
+        if (was == best)
+            continue;
+        any = true;
         p->body_of[i] = best;
+        if (was < p->n_bodies)
+            changed[was] = true;
+        if (best < p->n_bodies)
+            changed[best] = true;
     }
-    if (changed)
-        fit_all(p);
-    return changed;
+    for (uint8_t b = 0; b < p->n_bodies; b++)
+        if (changed[b])
+            fit_body(p, b);
+    return any;
 }
 
-/* Alternates between assigning features to bodies and fitting poses until nothing changes. */
+/* Alternates between assigning features to bodies and fitting poses until nothing changes. Does
+ * nothing if no body has changed since. */
 static void reassign(struct grrl_perception *p)
 {
-    for (int round = 0; round < REASSIGN_ROUNDS && reassign_once(p); round++) {
-    }
+    for (int round = 0; round < REASSIGN_ROUNDS && !p->is_assigned; round++)
+        p->is_assigned = !reassign_once(p);
 }
 
 /* Removes bodies with too few features. */
@@ -304,6 +317,7 @@ void grrl_bodies_update(struct grrl_perception *p)
 {
     if (p->n_bodies == 0)
         grrl_initial_segmentation(p);
+    p->is_assigned = false;
     p->rest_error_m = grrl_rest_error(p);
     for (uint16_t i = 0; i < p->n_slots; i++)
         p->has_moved[i] = grrl_assign_moves(p, i);

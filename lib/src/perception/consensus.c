@@ -31,8 +31,15 @@
  * afterwards. */
 #define INLIER_COST 3.5f
 
+/* A group that is lost early saw nothing move apart, so everything follows it: it must be seen in
+ * one of so many keyframes. */
+#define TOLD_SHARE 2
+
 #define GROW_ROUNDS 3 /* a group grows along a link, then settles */
-#define SEEN 100u     /* outweighs the number of frames averaged, 60 at most */
+
+/* Settled groups that are remembered: a split is between few parts. */
+#define SETTLED_MAX 4
+#define SEEN 100u /* outweighs the number of frames averaged, 60 at most */
 
 /* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -241,15 +248,18 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
 {
     float cost[GRRL_MAX_FEATURES] = {0.0f};
     float count[GRRL_MAX_FEATURES] = {0.0f};
+    const float lost = INLIER_COST * (float)chosen->n; /* above it no keyframe to come helps */
+    unsigned told = 0;                                 /* keyframes */
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
         if (k == k0 || !displacement_of(p, group, n_group, k0, k, &d))
             continue;
+        told++;
         for (uint16_t i = 0; i < n; i++) {
             uint8_t w0 = p->keyframe[k0].weight[slots[i]];
             uint8_t w1 = p->keyframe[k].weight[slots[i]];
-            if (w0 == 0 || w1 == 0)
+            if (w0 == 0 || w1 == 0 || cost[i] > lost)
                 continue;
             struct grrl_vec2 x =
                 grrl_vec2_scale(grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from), d.size);
@@ -263,7 +273,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
         }
     }
     uint16_t n_members = 0;
-    for (uint16_t i = 0; i < n; i++)
+    for (uint16_t i = 0; i < n && TOLD_SHARE * told >= chosen->n; i++)
         if (count[i] > 0.0f && cost[i] <= INLIER_COST * count[i])
             members[n_members++] = slots[i];
     return n_members;
@@ -297,6 +307,63 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
     return n_group;
 }
 
+/* Groups that grow no more: to another seed that comes to one of them, nothing else happens. */
+struct settled {
+    uint8_t n;
+    uint32_t bits[SETTLED_MAX][(GRRL_MAX_FEATURES + 31) / 32];
+};
+
+static void set_bits(const uint16_t *group, uint16_t n, uint32_t *bits)
+{
+    for (uint16_t i = 0; i < n; i++)
+        bits[group[i] / 32] |= UINT32_C(1) << group[i] % 32;
+}
+
+static bool is_settled(const struct settled *settled, const uint16_t *group, uint16_t n)
+{
+    uint32_t bits[(GRRL_MAX_FEATURES + 31) / 32] = {0};
+    set_bits(group, n, bits);
+    for (uint8_t i = 0; i < settled->n; i++)
+        if (memcmp(bits, settled->bits[i], sizeof bits) == 0)
+            return true;
+    return false;
+}
+
+static void remember(struct settled *settled, const uint16_t *group, uint16_t n)
+{
+    if (settled->n == SETTLED_MAX)
+        return;
+    memset(settled->bits[settled->n], 0, sizeof settled->bits[0]);
+    set_bits(group, n, settled->bits[settled->n++]);
+}
+
+/*
+ * Lets a group take in what follows it and lose what does not; returns its size. *stable: at first
+ * the size of the group, then how much of it follows itself for sure. A group that swells in the
+ * last round saw little, and has not yet met what it gained.
+ */
+static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t k0,
+                     const struct choice_of_keyframes *chosen, struct settled *settled,
+                     uint16_t *group, uint16_t *stable)
+{
+    uint16_t grown[GRRL_MAX_FEATURES];
+    uint16_t n_group = *stable;
+    for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
+        uint16_t n_grown = followers(p, slots, n, group, n_group, k0, chosen, grown);
+        bool same = n_grown == n_group && memcmp(group, grown, n_grown * sizeof group[0]) == 0;
+        memcpy(group, grown, n_grown * sizeof group[0]);
+        *stable = n_grown < n_group ? n_grown : n_group;
+        n_group = n_grown;
+        if (same)
+            remember(settled, group, n_group);
+        if (same || is_settled(settled, group, n_group)) {
+            *stable = n_group;
+            break;
+        }
+    }
+    return n_group;
+}
+
 /* The largest set of features in `slots` that moved as one; returns its size, members[]. */
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              const float *score, uint16_t *members)
@@ -305,22 +372,21 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
     struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
     uint16_t best = 0;
+    uint16_t n_members = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
+    struct settled settled = {0};
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
         uint16_t group[GRRL_MAX_FEATURES];
-        uint16_t grown[GRRL_MAX_FEATURES];
         if (p->keyframe[k0].weight[slots[i]] == 0)
             continue;
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
-        for (int round = 0; round < GROW_ROUNDS && n_group >= 3; round++) {
-            uint16_t n_grown = followers(p, slots, n, group, n_group, k0, &chosen, grown);
-            memcpy(group, grown, n_grown * sizeof group[0]);
-            n_group = n_grown;
-        }
-        if (n_group > best) {
-            best = n_group;
+        uint16_t stable = n_group;
+        n_group = grow(p, slots, n, k0, &chosen, &settled, group, &stable);
+        if (stable > best) {
+            best = stable;
+            n_members = n_group;
             memcpy(members, group, n_group * sizeof group[0]);
         }
     }
-    return best;
+    return n_members;
 }

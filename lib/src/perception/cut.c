@@ -133,11 +133,29 @@ static struct grrl_vec2 rotate_30(struct grrl_vec2 v)
     return (struct grrl_vec2){v.x * 0.8660254f - v.y * 0.5f, v.x * 0.5f + v.y * 0.8660254f};
 }
 
+/* total[i]: what is saved if the first i + 1 features of an order are one part. Keyframe by
+ * keyframe, whose sums then grow in registers. */
+static void sweep(const struct grrl_perception *p, const struct grrl_rigid_group *t,
+                  const struct part_sum *all, const uint16_t *order, float *total)
+{
+    uint16_t least = p->config.min_features;
+    for (uint16_t i = 0; i < t->n; i++)
+        total[i] = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        struct part_sum left = {0};
+        for (uint16_t i = 0; i + least < t->n; i++) {
+            struct part_sum one = sum_of(p, t, order[i], k);
+            add(&left, &one, 1.0f);
+            total[i] += i + 1 >= least ? saved_by_both(&left, &all[k]) : 0.0f;
+        }
+    }
+}
+
 float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_group *t, uint8_t body,
                     uint16_t *part, uint16_t *n_part)
 {
     struct part_sum all[GRRL_MAX_KEYFRAMES];
-    struct part_sum left[GRRL_MAX_KEYFRAMES];
+    float total[GRRL_MAX_FEATURES];
     uint16_t order[GRRL_MAX_FEATURES];
     sum_all(p, t, all);
     for (uint16_t i = 0; i < t->n; i++)
@@ -149,20 +167,12 @@ float grrl_cut_best(const struct grrl_perception *p, const struct grrl_rigid_gro
     *n_part = 0;
     for (int turn = 0; turn < DIRECTIONS; turn++) {
         sort_along(t, direction, order, t->n);
-        for (uint8_t k = 0; k < p->n_keyframes; k++)
-            left[k] = (struct part_sum){0};
+        sweep(p, t, all, order, total);
         for (uint16_t i = 0; i + least < t->n; i++) {
-            float total = 0.0f;
-            for (uint8_t k = 0; k < p->n_keyframes; k++) {
-                struct part_sum one = sum_of(p, t, order[i], k);
-                add(&left[k], &one, 1.0f);
-                total += i + 1 >= least ? saved_by_both(&left[k], &all[k]) : 0.0f;
-            }
-            if (i + 1 >= least && total > best) {
-                best = total;
+            if (i + 1 >= least && total[i] > best) {
+                best = total[i];
                 *n_part = (uint16_t)(i + 1);
-                for (uint16_t j = 0; j <= i; j++)
-                    part[j] = order[j];
+                memcpy(part, order, *n_part * sizeof *part);
             }
         }
         direction = rotate_30(direction);

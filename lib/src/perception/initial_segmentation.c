@@ -58,9 +58,9 @@ static float neighbour_distance2(const struct grrl_perception *p, uint16_t i, ui
     return second;
 }
 
-static void sort(float *values, uint16_t n)
+void grrl_perception_sort(float *values, uint16_t n)
 {
-    for (uint16_t i = 1; i < n; i++) { /* insertion sort: once per object */
+    for (uint16_t i = 1; i < n; i++) {
         float v = values[i];
         uint16_t j = i;
         while (j > 0 && values[j - 1] > v) {
@@ -78,7 +78,7 @@ static void sort(float *values, uint16_t n)
  */
 static float object_reach(float *distance2, uint16_t n)
 {
-    sort(distance2, n);
+    grrl_perception_sort(distance2, n);
     float total = 0.0f;
     for (uint16_t i = 0; i < n; i++)
         total += grrl_log(distance2[i] + LEAST_M2);

@@ -18,8 +18,6 @@
 #define TURN_EVIDENCE_MAX 30.0f
 #define PUSH_EVIDENCE 4.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
-
 /* The body that reveals the camera's own motion: the widest, if it is wide enough to lie behind a
  * and b rather than beside them. GRRL_MAX_LINKS: there is none. */
 static uint8_t background_of(const struct grrl_perception *p, uint8_t a, uint8_t b)
@@ -73,7 +71,7 @@ static float turn_variance(const struct grrl_perception *p, uint8_t k, uint8_t b
     float noise = p->config.noise_m;
     float model = grrl_perception_model_error(p);
     return (noise * noise + 4.0f * model * model + p->bend_m2[body] * pose->weight) /
-           (pose->inertia + LEAST_INERTIA);
+           (pose->inertia + GRRL_LEAST_INERTIA);
 }
 
 /* Position of b along the sliding axis, in the frame of a. */
@@ -90,11 +88,11 @@ static bool sees_both(const struct grrl_perception *p, uint8_t k,
 }
 
 /*
- * How far a pair turned together while sliding, in chi squared. Turns at other times do not count:
- * a thing that is carried and then leaves in a straight line turns first and slides afterwards.
- * Both bodies must turn in the image, which rules out a third body turning by itself, and relative
- * to the background, which rules out the camera. If one body of the pair is the background, its
- * turn cannot be distinguished from that of the camera.
+ * How far a pair turned together at most while sliding, in chi squared. Turns at other times do not
+ * count: a thing that is carried and then leaves in a straight line turns first and slides
+ * afterwards. Both bodies must turn in the image, which rules out a third body turning by itself,
+ * and relative to the background, which rules out the camera. If one body of the pair is the
+ * background, its turn cannot be distinguished from that of the camera.
  */
 static float turn_while_sliding(const struct grrl_perception *p,
                                 const struct grrl_joint_evidence *e)
@@ -102,6 +100,7 @@ static float turn_while_sliding(const struct grrl_perception *p,
     uint8_t ground = background_of(p, e->a, e->b);
     struct turns turns = {.variance = 0.0f};
     uint8_t last = GRRL_MAX_KEYFRAMES;
+    float most2 = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes && ground < GRRL_MAX_LINKS; k++) {
         const struct grrl_perception_pose *now = p->pose[k];
         if (!sees_both(p, k, e) || !(now[ground].weight > 0.0f))
@@ -114,12 +113,13 @@ static float turn_while_sliding(const struct grrl_perception *p,
             add_turns(&turns, &before[e->b], &now[e->b], &moved, 1);
             float v = turn_variance(p, k, e->a) + turn_variance(p, k, e->b);
             turns.variance = v > turns.variance ? v : turns.variance;
+            float turned = smaller(smaller(turns.in_picture[0], turns.in_picture[1]),
+                                   smaller(turns.on_ground[0], turns.on_ground[1]));
+            most2 = turned * turned > most2 ? turned * turned : most2;
         }
         last = k;
     }
-    float turned = smaller(smaller(turns.in_picture[0], turns.in_picture[1]),
-                           smaller(turns.on_ground[0], turns.on_ground[1]));
-    return turns.variance > 0.0f ? turned * turned / turns.variance : 0.0f;
+    return turns.variance > 0.0f ? most2 / turns.variance : 0.0f;
 }
 
 /* Strokes of a slide, back and forth: independent things do not return the same way. */

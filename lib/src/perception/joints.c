@@ -75,8 +75,6 @@
  * FAR_SIGMAS in apart.c. */
 #define EXCITED_SIGMAS 5.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
-
 /* The relative motion of bodies a and b in one keyframe, in the frame of a. */
 struct relative {
     float c; /* rotation of b in a */
@@ -132,8 +130,8 @@ static float point_variance(const struct grrl_perception *p, const struct motion
 {
     float model = grrl_perception_model_error(p);
     return motion->noise2 * (1.0f / r->pa->weight + 1.0f / r->pb->weight +
-                             0.5f * (lever_a2 / (r->pa->inertia + LEAST_INERTIA) +
-                                     lever_b2 / (r->pb->inertia + LEAST_INERTIA))) +
+                             0.5f * (lever_a2 / (r->pa->inertia + GRRL_LEAST_INERTIA) +
+                                     lever_b2 / (r->pb->inertia + GRRL_LEAST_INERTIA))) +
            2.0f * model * model + motion->bend_a + motion->bend_b;
 }
 
@@ -143,10 +141,10 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
     /* the model error of a body's n features affects its turn like noise of one frame each */
     float model = grrl_perception_model_error(p);
     float model2 = model * model;
-    return (motion->noise2 + 4.0f * model2) *
-               (1.0f / (r->pa->inertia + LEAST_INERTIA) + 1.0f / (r->pb->inertia + LEAST_INERTIA)) +
-           motion->bend_a * r->pa->weight / (r->pa->inertia + LEAST_INERTIA) +
-           motion->bend_b * r->pb->weight / (r->pb->inertia + LEAST_INERTIA);
+    return (motion->noise2 + 4.0f * model2) * (1.0f / (r->pa->inertia + GRRL_LEAST_INERTIA) +
+                                               1.0f / (r->pb->inertia + GRRL_LEAST_INERTIA)) +
+           motion->bend_a * r->pa->weight / (r->pa->inertia + GRRL_LEAST_INERTIA) +
+           motion->bend_b * r->pb->weight / (r->pb->inertia + GRRL_LEAST_INERTIA);
 }
 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)

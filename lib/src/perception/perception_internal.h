@@ -25,6 +25,9 @@
  * once in 3,000 points, and an outlier costs no more. */
 #define GRRL_COST_CAP 16.0f
 
+/* m^2, added to inertias to avoid division by zero. */
+#define GRRL_LEAST_INERTIA 1e-9f
+
 static inline float grrl_vec2_distance2(struct grrl_vec2 a, struct grrl_vec2 b)
 {
     struct grrl_vec2 d = grrl_vec2_sub(a, b);
@@ -104,18 +107,24 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       struct grrl_vec2 *local);
 
 /*
- * Squared residuals of a slot over their variance, each capped at `cap`, summed over the keyframes;
- * each is 2 on average. *n counts the keyframes that saw both.
+ * Squared residuals of a slot over their variance, each capped at GRRL_COST_CAP, summed over the
+ * keyframes; each is 2 on average. *n counts the keyframes that saw both. A sum that exceeds
+ * `enough` is not finished, and *n is left as it was.
  */
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
-                      const struct grrl_perception_pose *poses, size_t stride, float cap,
+                      const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n);
+
+#define GRRL_COST_ANY 1e9f /* enough for no sum */
 
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
 uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots);
 
 /* initial_segmentation.c: the candidate bodies in the first keyframe. */
 void grrl_initial_segmentation(struct grrl_perception *p);
+
+/* Sorts in ascending order, by insertion. */
+void grrl_perception_sort(float *values, uint16_t n);
 
 /* Whether enough features of a body lay densely there by themselves, not linked by those of others.
  */

@@ -23,19 +23,6 @@ enum { LEAST_PAIRS = 3, LEAST_FEATURES = 12 };
 /* The measured error counts if it is at least this many times the configured error. */
 #define SIGNIFICANT 1.5f
 
-static void sort(float *values, uint16_t n)
-{
-    for (uint16_t i = 1; i < n; i++) { /* insertion sort: table points, or rests */
-        float v = values[i];
-        uint16_t j = i;
-        while (j > 0 && values[j - 1] > v) {
-            values[j] = values[j - 1];
-            j--;
-        }
-        values[j] = v;
-    }
-}
-
 /* Comparison of the table's points between two rests; variances per axis. */
 struct rest_pair {
     uint16_t n;    /* points seen in both */
@@ -58,7 +45,7 @@ static struct rest_pair compare(const struct grrl_perception *p, uint8_t k0, uin
     }
     if (pair.n == 0)
         return pair;
-    sort(d2, pair.n);
+    grrl_perception_sort(d2, pair.n);
     pair.noise /= (float)pair.n;
     pair.surplus = 0.5f * d2[pair.n / 2] / MEDIAN - pair.noise;
     return pair;
@@ -86,7 +73,7 @@ float grrl_rest_error(const struct grrl_perception *p)
     }
     if (n < LEAST_PAIRS || !p->config.static_background)
         return 0.0f;
-    sort(surplus, n);
+    grrl_perception_sort(surplus, n);
     float found = surplus[n / 2];
     float chance = CHANCE_SIGMAS * CHANCE * (noise / points) / grrl_sqrt(points);
     float least = SIGNIFICANT * p->config.model_error_m;

@@ -21,8 +21,6 @@
 /* Standard deviations of a size in a keyframe within which a change may be noise. */
 #define SIZE_SIGMAS 3.0f
 
-#define LEAST_INERTIA 1e-9f /* m^2, added to avoid division by zero */
-
 float grrl_rigid_growth(const struct grrl_perception *p, float length, float inertia)
 {
     float prior = grrl_perception_variance(p, 1) / (GROWTH_SD * GROWTH_SD);
@@ -97,7 +95,7 @@ float grrl_perception_size_change(const struct grrl_perception *perception, uint
         fit_sized_pose(p, k, slots, n, p->shape, true, &pose);
         if (!(pose.weight > 0.0f))
             continue;
-        float sd = grrl_sqrt(grrl_perception_variance(p, 1) / (pose.inertia + LEAST_INERTIA));
+        float sd = grrl_sqrt(grrl_perception_variance(p, 1) / (pose.inertia + GRRL_LEAST_INERTIA));
         least = pose.growth + SIZE_SIGMAS * sd < least ? pose.growth + SIZE_SIGMAS * sd : least;
         most = pose.growth - SIZE_SIGMAS * sd > most ? pose.growth - SIZE_SIGMAS * sd : most;
     }
@@ -291,13 +289,13 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
 }
 
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
-                      const struct grrl_perception_pose *poses, size_t stride, float cap,
+                      const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n)
 {
     float cost = 0.0f;
     float noise2 = p->config.noise_m * p->config.noise_m;
     uint16_t count = 0;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes && cost <= enough; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w == 0 || !(pose->weight > 0.0f))
@@ -305,12 +303,13 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
         struct grrl_vec2 r = grrl_vec2_sub(p->keyframe[k].point[slot], grrl_to_world(pose, local));
         float lever2 = grrl_vec2_dot(local, local);
         float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
-                         0.5f * noise2 * lever2 / (pose->inertia + LEAST_INERTIA);
+                         0.5f * noise2 * lever2 / (pose->inertia + GRRL_LEAST_INERTIA);
         float d2 = grrl_vec2_dot(r, r) / variance;
-        cost += d2 < cap ? d2 : cap;
+        cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
         count++;
     }
-    *n = count;
+    if (cost <= enough)
+        *n = count;
     return cost;
 }
 

@@ -365,6 +365,9 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     (void)grrl_joints_weigh(perception, first, second, &e);
     *pair = (struct grrl_pair){
         .p_revolute = 1.0f / 3.0f, .p_prismatic = 1.0f / 3.0f, .p_disconnected = 1.0f / 3.0f};
+    struct grrl_apart_range range = grrl_apart_range_between(perception, first, second);
+    pair->turned_rad = range.turn;
+    pair->slid_m = grrl_sqrt(range.shift2);
     if (e.fit.excited) {
         pair->p_revolute = e.p[0];
         pair->p_prismatic = e.p[1];
@@ -372,7 +375,7 @@ enum grrl_status grrl_perception_pair(const struct grrl_perception *perception, 
     }
     if (is_joined(model, first, second))
         pair->relation = GRRL_RELATION_JOINED;
-    else if (pair->p_disconnected >= SURE_DISCONNECTED)
+    else if (pair->p_disconnected >= SURE_DISCONNECTED && e.doubt != GRRL_REASON_UNPROVEN)
         pair->relation = GRRL_RELATION_DISCONNECTED;
     else
         pair->reason = e.doubt == GRRL_REASON_NONE ? GRRL_REASON_STRUCTURE : e.doubt;

@@ -87,6 +87,12 @@ bool grrl_graph_equal(const struct grrl_graph *a, const struct grrl_graph *b, gr
 {
     if (a->n != b->n)
         return false;
+    if (mask == GRRL_ALL_PROPERTIES) { /* as for canonical forms: whole arrays at a time */
+        bool equal = memcmp(a->label, b->label, a->n * sizeof a->label[0]) == 0;
+        for (int type = 0; type < GRRL_JOINT_TYPES && equal; type++)
+            equal = memcmp(a->joined[type], b->joined[type], a->n * sizeof a->joined[0][0]) == 0;
+        return equal;
+    }
     for (uint8_t i = 0; i < a->n; i++) {
         if (grrl_label_masked(a->label[i], mask) != grrl_label_masked(b->label[i], mask))
             return false;

@@ -89,7 +89,7 @@ static inline unsigned bucket_of(const struct grrl_match_plan *plan, enum grrl_m
                                  unsigned vertex)
 {
     uint32_t key = kind == GRRL_MATCH_ISOMORPHISM ? plan->colour[vertex]
-                                                  : hash_label(plan->label[vertex]) * SPREAD_LOW;
+                                                  : spread(hash_label(plan->label[vertex]));
     return key >> 29 << 3;
 }
 

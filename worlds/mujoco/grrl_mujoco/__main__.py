@@ -1,4 +1,4 @@
-"""grrl-mujoco: options, files, signals and lines on the terminal around the node."""
+"""grrl-mujoco: options, files, signals and terminal output around the node."""
 
 import argparse
 import csv
@@ -13,7 +13,7 @@ from .objects import ObjectError, draw_object, parse_object
 POLL_S = 0.005
 HINT_PERIOD_US = 5_000_000
 OUTCOMES = {1: "discovered", 2: "capped", 3: "aborted"}
-EPILOG = """Without --lcm-url the environment variable LCM_DEFAULT_URL counts.
+EPILOG = """Without --lcm-url it uses the environment variable LCM_DEFAULT_URL.
 Exit status: 0 all trials done or stopped by a signal; 1 failed; 2 wrong command line.
 """
 
@@ -46,29 +46,29 @@ def parse_options(arguments):
                     "pushes, and a supervisor, all on LCM for grrl-agent.")
     add = parser.add_argument
     add("--object", required=True, metavar="OBJECT",
-        help="chain (RPR), term (D(lb, R(l1, l2))) or file; needed")
+        help="chain (RPR), term (D(lb, R(l1, l2))) or file; required")
     add("--trials", type=number(int, 1, 10**6), default=1, metavar="N",
-        help="trials until the end (1)")
+        help="number of trials (1)")
     add("--cap", type=number(int, 1, 10**6), default=100, metavar="N",
-        help="pushes after which a trial is given up (100)")
+        help="pushes after which a trial ends unsolved (100)")
     add("--seed", type=number(int, 0, 2**64 - 1), default=1, metavar="N",
         help="seed of dimensions, poses, noise and friction (1)")
     add("--noise", type=number(float, 0, 100), default=0.7, metavar="MM",
         help="standard deviation of a tracked point, millimetres (0.7)")
     add("--real-time", action="store_true",
-        help="30 frames a second instead of lock-step with the agent")
+        help="30 frames per second instead of lock-step with the agent")
     add("--agent-timeout", type=number(float, 0.1, 10**6), metavar="S",
-        help="give up when no agent is heard for S seconds (wait for ever)")
+        help="give up after S seconds without an agent (wait forever)")
     add("--log", metavar="FILE", help="write every message to an LCM log")
     add("--results", metavar="FILE", help="write trial,pushes,outcome lines (CSV)")
-    add("--render", metavar="DIR", help="write a picture of every rest to DIR (PNG; slow)")
+    add("--render", metavar="DIR", help="write an image of every rest to DIR (PNG; slow)")
     add("--lcm-url", metavar="URL", help="LCM provider")
     add("--quiet", action="store_true", help="print errors only")
     return parser.parse_args(arguments)
 
 
 class Results:
-    """The lines on the terminal and the CSV."""
+    """Terminal output and the CSV."""
 
     def __init__(self, path, quiet):
         self.quiet = quiet
@@ -105,7 +105,7 @@ def open_lcm(url):
 
 
 def now_us():
-    """The time of day at the start, and what has passed since, whoever sets the clock."""
+    """The time of day at the start plus the time since, even if the clock is set meanwhile."""
     return now_us.offset + time.monotonic_ns() // 1000
 
 
@@ -121,10 +121,10 @@ def stop(*_):
 
 
 def loop(node, bus, options):
-    """0 when all trials are done or a signal came, 1 when the wait for an agent is over."""
+    """0 when all trials are done or a signal arrived, 1 when the wait for an agent timed out."""
     hint_us = 0
     while not (node.finished or stopped):
-        # Waits outside LCM, whose own wait fails when a signal comes.
+        # Waits outside LCM, whose own wait fails when a signal arrives.
         if select.select([bus.fileno()], [], [], POLL_S)[0]:
             bus.handle_timeout(0)
         node.tick()

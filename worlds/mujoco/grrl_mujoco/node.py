@@ -1,4 +1,4 @@
-"""Tracker, robot and supervisor on LCM: the course of a trial, as docs/messages.md tells it.
+"""Tracker, robot and supervisor on LCM: the course of a trial, as described in docs/messages.md.
 
 The node is driven by events: the caller hands it messages by LCM's handlers and calls tick at least
 every 10 ms until `finished`. It waits for nothing.
@@ -11,17 +11,17 @@ from .supervisor import Supervisor
 from .world import World
 
 REST_FRAMES_TO_SETTLE = 10
-MOST_LOOKS = 10  # at a scene in which the agent finds nothing to push
+MAX_LOOKS = 10  # at a scene in which the agent finds nothing to push
 SILENCE_US = 1_000_000
 REPEAT_US = 50_000  # lock-step: until the agent answers
-TRIAL_PERIOD_US = 200_000  # real time: until the agent agrees
+TRIAL_PERIOD_US = 200_000  # real time: until the agent confirms
 STATUS_PERIOD_US = 100_000
 FRAME_PERIOD_US = 33_333
 FINISH_PATIENCE_US = 2_000_000
 MODEL_PATIENCE_US = 60_000_000  # an emulated controller takes seconds
-MOST_UNJUDGED = 3  # trials in a row aborted for want of a model
+MAX_UNJUDGED = 3  # trials in a row aborted because no model arrived
 
-# OFFER and ENDED wait for the agent to agree; RESTING and PUSHING send frames; DECIDING waits for
+# OFFER and ENDED wait for the agent to confirm; RESTING and PUSHING send frames; DECIDING waits for
 # model, judgement and the next push.
 OFFER, RESTING, DECIDING, PUSHING, ENDED, FINISHING, DONE = range(7)
 FRAMES_FLOW = (RESTING, DECIDING, PUSHING)
@@ -65,15 +65,15 @@ class Node:
 
     @property
     def agent_is_blind(self):
-        """Lock-step: it finds nothing to push, however often it looks; the run cannot go on."""
-        return self.looks > MOST_LOOKS
+        """Lock-step: it finds nothing to push even after many frames; the run cannot continue."""
+        return self.looks > MAX_LOOKS
 
     @property
     def agent_is_mute(self):
-        """Its models do not come, or only such as are refused; the run cannot go on."""
-        return self.unjudged >= MOST_UNJUDGED
+        """No valid model arrives from it; the run cannot continue."""
+        return self.unjudged >= MAX_UNJUDGED
 
-    # Messages coming in.
+    # Incoming messages.
 
     def _receiver(self, kind, handler):
         def receive(channel, data):
@@ -93,8 +93,8 @@ class Node:
         return receive
 
     def _known_agent(self, session_id):
-        """Whether a message comes from the agent of this run. Another session takes over when the
-        known one has been silent: it was restarted, and its trial cannot go on."""
+        """Whether a message comes from the agent of this run. Another session takes over if the
+        known one has been silent: it was restarted, and its trial cannot continue."""
         now = self.now_us()
         if self.agent_session_id not in (0, session_id):
             if now - self.agent_heard_us < SILENCE_US:
@@ -165,8 +165,8 @@ class Node:
     # The robot.
 
     def _obey(self, command):
-        """A command counts once it agrees with the newest word of the supervisor and, in lock-step,
-        with the newest frame; whatever else comes is an answer to something older."""
+        """A command counts if it refers to the supervisor's latest message and, in lock-step, to
+        the latest frame. Anything else answers something older."""
         if command.trial_revision != self.trial.revision:
             return
         self.agent_revision = command.trial_revision
@@ -195,7 +195,7 @@ class Node:
             if judged and command.cmd_seq == self.ack_cmd_seq + 1:
                 self._start_push(command)
         elif judged and not self.real_time:
-            self.looks += 1  # it sees nothing to push; perhaps it does in further frames
+            self.looks += 1  # it sees nothing to push; further frames may help
             if not self.agent_is_blind:
                 self.phase = RESTING
                 self.rest_frames = 0
@@ -206,7 +206,7 @@ class Node:
         self.pushes += 1
         self.looks = self.rest_frames = 0
         problem = self.world.begin_push(command)
-        if problem:  # it counts as a push without effect: the agent sees that nothing moved
+        if problem:  # counts as a push without effect: the agent sees that nothing moved
             self.phase = RESTING
             self._set_push_state(grrl.push_status_t.REFUSED, grrl.push_status_t.BAD_COMMAND)
             self.on_note(f"push refused: {problem}")
@@ -225,12 +225,12 @@ class Node:
     # The tracker.
 
     def _advance(self):
-        """In lock-step the next frame is due as soon as the last one was answered."""
+        """In lock-step the next frame is due once the last one was answered."""
         if not self.real_time and self.phase in FRAMES_FLOW:
             self._send_frame()
 
     def _move_on(self):
-        """Lets the world go on for a frame; the phase to tell."""
+        """Advances the world by one frame; returns the phase to report."""
         if self.phase == PUSHING:
             if not self.world.step_frame():
                 self.phase = RESTING
@@ -261,7 +261,7 @@ class Node:
         points.n_points = len(points.id)
         self._publish_points()
 
-    # Messages going out.
+    # Outgoing messages.
 
     def _publish(self, channel, message):
         message.utime = self.now_us()
@@ -294,7 +294,7 @@ class Node:
             self.phase = DONE
         elif self._waits_for_a_model(now):
             self.unjudged += 1
-            self.on_note("no model comes that can be judged, the trial is aborted")
+            self.on_note("no valid model arrives; the trial is aborted")
             self._end_trial(grrl.trial_t.ABORTED)
         elif self.real_time:
             self._tick_real_time(now)
@@ -304,7 +304,7 @@ class Node:
                 self._publish_points()
 
     def _waits_for_a_model(self, now):
-        """Too long, from an agent that is there."""
+        """Whether an agent that is present has not sent a model for too long."""
         return (self.phase == DECIDING and self.trial.judged_cmd_seq != self.ack_cmd_seq
                 and now - self.settled_us >= MODEL_PATIENCE_US
                 and now - self.agent_heard_us < SILENCE_US)
@@ -318,6 +318,6 @@ class Node:
             return
         self._send_frame()
         self.frame_due_us += FRAME_PERIOD_US
-        # After a pause of the process the rate is kept, not the count.
+        # After a pause of the process, frames are skipped, not caught up.
         if self.frame_due_us < now - FRAME_PERIOD_US:
             self.frame_due_us = now

@@ -1,4 +1,4 @@
-"""What stands on the table: a description that is parsed once, and an object drawn anew each trial.
+"""The object on the table: a description parsed once, and a random instance for each trial.
 
 parse_object takes what grrl-sim takes: a chain (RPRPRPR), a term (R(l1, R(l5, ..))) or a file with
 a term and dimensions (scissors.grrl). draw_object gives it the dimensions of one trial, from the
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from . import kinematics
 from .terms import BACKGROUND, MAX_LINKS, TermError, parse_term
 
-# (low, high), drawn evenly. Documented in docs/mujoco.md.
+# (low, high), uniformly distributed. Documented in docs/mujoco.md.
 LENGTH_M = {"": (0.11, 0.16), "s": (0.075, 0.095), "l": (0.165, 0.20)}
 WIDTH_M = (0.030, 0.045)
 HEIGHT_M = (0.018, 0.030)
-LINE_DENSITY_KG_M = (1.6, 3.0)  # of all links of a trial, and each differs by MASS_SPREAD
+LINE_DENSITY_KG_M = (1.6, 3.0)  # the same for all links of a trial, except for MASS_SPREAD
 MASS_SPREAD = 0.15
 TABLE_FRICTION = (0.20, 0.32)
 FINGER_FRICTION = (0.15, 0.45)
@@ -37,7 +37,7 @@ DRAWS = 20
 
 
 class ObjectError(ValueError):
-    """A description that is no object: what, where, and what would be right."""
+    """An invalid description of an object: what is wrong, where, and what would be right."""
 
 
 @dataclass
@@ -57,7 +57,7 @@ class Link:
 
 @dataclass
 class Joint:
-    """At value 0 the anchors coincide and b is turned by angle against a; see relative_pose."""
+    """At value 0 the anchors coincide and b is rotated by angle against a; see relative_pose."""
 
     kind: str  # "R" or "P"
     a: int

@@ -1,4 +1,4 @@
-"""Pictures of the scene for spot checks: nothing of the run depends on them."""
+"""Images of the scene for spot checks; the run does not depend on them."""
 
 import os
 import struct
@@ -22,7 +22,7 @@ def write_png(path, image):
 
 
 class Pictures:
-    """One picture a rest, DIR/trial-TTT-push-PPP.png; made as an object before MuJoCo draws."""
+    """One image per rest, DIR/trial-TTT-push-PPP.png. Construct it before MuJoCo draws."""
 
     WIDTH, HEIGHT = 960, 720
 
@@ -35,7 +35,7 @@ class Pictures:
         self._try_out()
 
     def _try_out(self):
-        """RuntimeError if this machine cannot draw; better now than at the first rest."""
+        """Raises RuntimeError if this machine cannot draw; better now than at the first rest."""
         try:
             import mujoco  # reads MUJOCO_GL when it is imported
 

@@ -11,13 +11,13 @@ from . import kinematics
 
 FINGER_RADIUS_M = 0.01
 FINGER_MASS_KG = 0.3
-FINGER_GAIN = 1500.0  # N s/m: how hard the guide holds its speed, up to the force limit
+FINGER_GAIN = 1500.0  # N s/m: how strongly the guide holds its speed, up to the force limit
 FOOT_RADIUS_M = 0.003
 STEP_S = 1 / 480
 STEPS_PER_FRAME = 16
 LIFTED_M = 10.0  # above the camera
 
-# Bits of what collides: feet with the table, bodies with bodies and with the finger.
+# Collision bits: feet with the table, bodies with bodies and with the finger.
 _TABLE, _BODY, _FINGER = 1, 2, 4
 
 
@@ -145,7 +145,7 @@ def _add_links(world, contact, equality, obj, poses):
         for geom in bodies[i].findall("geom"):
             geom.set("rgba", colours[n % len(colours)])
         for k in movable[n + 1:]:
-            # Neighbours slide over one another; links that lie crossed at the start stay so.
+            # Neighbours slide over each other; links that cross at the start stay so.
             if frozenset((i, k)) in apart or kinematics.rectangles_overlap(
                     obj.links[i], poses[i], obj.links[k], poses[k], 0.0):
                 _add(contact, "exclude", body1=f"l{i}", body2=f"l{k}")

@@ -1,4 +1,4 @@
-"""Whether a believed structure is the true one: isomorphic by links and joints, sizes ignored."""
+"""Whether an estimated structure is the true one: isomorphic links and joints, sizes ignored."""
 
 MAX_STEPS = 200_000
 
@@ -19,7 +19,7 @@ def _adjacency(n, joints):
 
 
 def _refine(left, right):
-    """Colours of the links of both graphs; equal colours for links that look alike from afar."""
+    """Colours of the links of both graphs; equal colours for links with the same neighbourhood."""
     colours = [[0] * len(left), [0] * len(right)]
     for _ in range(len(left)):
         names = {}
@@ -87,7 +87,7 @@ def same_structure(n_a, joints_a, n_b, joints_b) -> bool:
 
 
 class Supervisor:
-    """Knows the true links and joints of an object; the background is no link."""
+    """Knows the true links and joints of an object; the background is not a link."""
 
     def __init__(self, n_links, joints):
         self.n_links = n_links

@@ -20,7 +20,7 @@ LONGEST_NAME = 15
 
 
 class TermError(ValueError):
-    """A text that is no structure. `column` counts from 1, `text` names no position."""
+    """A text that is not a structure. `column` counts from 1; `text` has no position."""
 
     def __init__(self, column: int, text: str):
         super().__init__(f"1:{column}: {text}")
@@ -108,7 +108,7 @@ class _Parser:
         name = f"{word[0]}{int(word[1:])}" if _NUMBERED.fullmatch(word) else word
         column = self.at + 1
         self.at += len(word)
-        if name != BACKGROUND:  # a link only when a joint asks for it
+        if name != BACKGROUND:  # a link only if a joint refers to it
             self.structure.add_link(name, properties, column)
         elif properties:
             raise TermError(column, "link lb is the background, without properties")

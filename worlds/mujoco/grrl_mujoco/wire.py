@@ -1,4 +1,4 @@
-"""Messages of the agent, checked before anything relies on them; lcmtypes/wire.c has the ranges."""
+"""Messages of the agent, checked before use; lcmtypes/wire.c has the ranges."""
 
 import math
 import struct
@@ -57,7 +57,7 @@ def decode(kind, data):
                 raise WireError(f"{name}: {field} is {number:g}, must be {least:g} to {most:g}")
     if kind is grrl.model_t and any(
             i >= message.n_links for i in [*message.joint_a, *message.joint_b]):
-        raise WireError(f"{name}: a joint of a link that is not there")
+        raise WireError(f"{name}: a joint refers to a link that does not exist")
     if len(message.encode()) != len(data):
         raise WireError(f"{name}: {len(data)} bytes are too many")
     return message

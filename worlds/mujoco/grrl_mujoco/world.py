@@ -21,22 +21,22 @@ BACKGROUND_POINTS = 25
 EDGE_M = 0.003
 POINT_DISTANCE_M = 0.01
 
-CONTACT_OFFSET_SIGMA_M = 0.004  # no two pushes come out alike
+CONTACT_OFFSET_SIGMA_M = 0.004  # no two pushes are the same
 DIRECTION_SIGMA_RAD = math.radians(4)
 FRICTION_SPREAD = 0.15
 
 BLOCKED_AFTER_S = 0.3
 BACK_OFF_STEP_M = 0.005
-BACK_OFF_MOST_M = 0.3
+MAX_BACK_OFF_M = 0.3
 LANDING_CLEARANCE_M = 0.001
 AT_REST_M_S = 0.001
-SETTLE_MOST_S = 1.0
+MAX_SETTLE_S = 1.0
 
 REACHED, MISSED, BLOCKED, TIMEOUT = 1, 2, 3, 4  # as in push_status_t
 
 
 def check_push(command):
-    """Empty if a push_command_t can be carried out, else what is wrong and what would be right."""
+    """Empty if a push_command_t can be executed, else what is wrong and what would be right."""
     x, y = (side / 2 + BESIDE_TABLE_M for side in TABLE_M)
     for name, point in (("start", command.start), ("end", command.end)):
         if not (abs(point[0]) <= x and abs(point[1]) <= y):
@@ -74,7 +74,7 @@ def _place(obj, rng):
 
 
 def _place_components(obj, forest, flat, rng):
-    """Each component turned and moved to where it is on the table and clear of the others."""
+    """Turns and moves each component until it is on the table and clear of the others."""
     poses = list(flat)
     done = []
     for c in range(len(forest.roots)):
@@ -90,7 +90,7 @@ def _place_components(obj, forest, flat, rng):
                                       for i in members])
             low, high = outline.min(axis=0), outline.max(axis=0)
             slack = np.array(TABLE_M) / 2 - 0.02 - (high - low) / 2
-            slack = np.maximum(slack, 0.0)  # a long object lies over the edge
+            slack = np.maximum(slack, 0.0)  # a long object extends over the edge
             shift = rng.uniform(-slack, slack) - (low + high) / 2
             moved = {i: (p[0] + shift[0], p[1] + shift[1], p[2]) for i, p in turned.items()}
             if not any(kinematics.rectangles_overlap(obj.links[i], moved[i], obj.links[k],
@@ -165,7 +165,7 @@ class World:
         return chosen
 
     def _point_on_table(self, poses, points, rng):
-        """One, if a free place 5 cm from the others is found."""
+        """Adds one if a free place 5 cm from the others is found."""
         for _ in range(60):
             p = rng.uniform(-0.5, 0.5, 2) * TABLE_M
             near = any(i < 0 and math.dist(p, (x, y)) < 0.05 for i, x, y in points)
@@ -178,7 +178,7 @@ class World:
                    for i in self.links)
 
     def observe(self):
-        """Ids, x and y of the visible points with fresh noise, ideal but for that."""
+        """Ids, x and y of the visible points, ideal except for fresh noise."""
         poses = self.poses()
         ids, where = [], []
         for number, (i, x, y) in enumerate(self.points):
@@ -222,13 +222,13 @@ class World:
         start = start + offset * np.array([-along[1], along[0]])
         poses, back = self.poses(), 0.0
         reach = FINGER_RADIUS_M + LANDING_CLEARANCE_M
-        while back <= BACK_OFF_MOST_M and self._covered(start - back * along, poses, reach):
+        while back <= MAX_BACK_OFF_M and self._covered(start - back * along, poses, reach):
             back += BACK_OFF_STEP_M
         self.command, self.line_m = command, length + back
         self.elapsed_s = self.progress_m = self.progress_s = 0.0
         self.contact_m = None
         self.pushing_now = True
-        if back > BACK_OFF_MOST_M:
+        if back > MAX_BACK_OFF_M:
             self._finish(BLOCKED)
             return ""
         self._lower_finger(start - back * along, turn)
@@ -287,7 +287,7 @@ class World:
             self._finish(BLOCKED)
 
     def finger_position(self):
-        """None while it is lifted."""
+        """The finger's position; None while it is lifted."""
         if self.finger is None:
             return None
         x, y, angle = self.finger
@@ -297,7 +297,7 @@ class World:
     # Time.
 
     def _greatest_speed(self):
-        """Of any link's centre or end in the plane, m/s."""
+        """The greatest speed of any link's centre or end in the plane, m/s."""
         fastest, velocity = 0.0, np.empty(6)
         for i, body in zip(self.links, self.bodies):
             mujoco.mj_objectVelocity(self.model, self.data, mujoco.mjtObj.mjOBJ_XBODY, body,
@@ -312,13 +312,13 @@ class World:
         mujoco.mj_forward(self.model, self.data)
 
     def _settle(self):
-        """Gravity presses the feet on the table before the first frame."""
+        """Lets gravity press the feet onto the table before the first frame."""
         for _ in range(int(0.2 / STEP_S)):
             mujoco.mj_step(self.model, self.data)
         self._at_rest()
 
     def step_frame(self):
-        """Advances 1/30 s. Whether a push goes on or the object has not come to rest yet."""
+        """Advances 1/30 s. Whether a push is in progress or the object is not at rest yet."""
         for _ in range(STEPS_PER_FRAME):
             if not (self.pushing_now or self.settling):
                 break  # dry friction: nothing moves by itself
@@ -327,6 +327,6 @@ class World:
                 self._check_finger()
             else:
                 self.settled_s += STEP_S
-                if self._greatest_speed() < AT_REST_M_S or self.settled_s >= SETTLE_MOST_S:
+                if self._greatest_speed() < AT_REST_M_S or self.settled_s >= MAX_SETTLE_S:
                     self._at_rest()
         return self.pushing_now or self.settling

@@ -119,6 +119,8 @@ struct grrl_pair {
     float p_revolute;
     float p_prismatic;
     float p_disconnected;
+    float turned_rad; /* how far they moved apart so far: min_turn_rad or min_slide_m tell a joint */
+    float slid_m;
 };
 
 /* The current estimate. Bodies and joints are in order of discovery. */
@@ -200,6 +202,7 @@ struct grrl_perception {
     /* private: bodies */
     uint8_t n_bodies;
     uint16_t n_numbers;
+    bool is_assigned; /* no body has changed since every feature was last found where it belongs */
     uint16_t number[GRRL_MAX_LINKS];
     struct grrl_vec2 shape[GRRL_MAX_FEATURES]; /* in the frame of the feature's body */
     struct grrl_perception_pose pose[GRRL_MAX_KEYFRAMES][GRRL_MAX_LINKS];

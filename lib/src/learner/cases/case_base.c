@@ -3,41 +3,13 @@
 
 #include <string.h>
 
-#include "base/range.h"
 #include "grrl/base/geometry.h"
 
 /* Keeps likelihoods away from zero: no outcome is impossible. */
 #define MIN_EXPECTED 0.05f
 
-/* Limits the doubt, so that a few pushes that go as expected remove it. */
-#define MIN_LOG_ODDS (-4.0f)
-
-void grrl_case_config_default(struct grrl_case_config *config)
-{
-    *config = (struct grrl_case_config){.prior = 0.5f,
-                                        .prior_weight = 1.0f,
-                                        .mismatch = 0.2f,
-                                        .bound = 0.4f,
-                                        .confidence = 0.5f,
-                                        .present = 3.0f,
-                                        .memory = 5,
-                                        .parts = GRRL_ALL_CONTEXT_PARTS};
-}
-
-enum grrl_status grrl_case_config_check(const struct grrl_case_config *config, const char **field)
-{
-    const struct grrl_range_check checks[] = {
-        {"prior", grrl_is_within(config->prior, -GRRL_MAX_REWARD, GRRL_MAX_REWARD)},
-        {"prior_weight", grrl_is_within(config->prior_weight, 0.001f, GRRL_MAX_REWARD)},
-        {"mismatch", grrl_is_within(config->mismatch, 0.0f, 1.0f)},
-        {"bound", grrl_is_within(config->bound, 0.0f, GRRL_MAX_REWARD)},
-        {"confidence", grrl_is_within(config->confidence, 0.0f, GRRL_MAX_REWARD)},
-        {"present", grrl_is_within(config->present, 0.0f, GRRL_MAX_REWARD)},
-        {"memory", config->memory >= 1},
-        {"parts", config->parts <= GRRL_ALL_CONTEXT_PARTS},
-    };
-    return grrl_range_first(checks, sizeof checks / sizeof checks[0], field);
-}
+/* Limits the doubt: a learner in deep doubt trusts this trial's few rewards alone. */
+#define MIN_LOG_ODDS (-1.0f)
 
 void grrl_cases_init(struct grrl_case_base *base, struct grrl_case *cases, uint32_t capacity)
 {
@@ -93,77 +65,91 @@ void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_
     base->log_odds = config->confidence;
 }
 
-static uint8_t count_mismatches(const struct grrl_context *a, const struct grrl_context *b,
-                                uint16_t parts)
-{
-    uint8_t n = 0;
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        if (((uint32_t)parts >> i & 1u) != 0 && a->part[i] != b->part[i])
-            n++;
-    return n;
-}
-
 /* The rewards, weighted by their relevance to one context. */
 struct evidence {
-    float older; /* total weight */
+    float all; /* total weight */
+    float older;
     float newer;
-    float older_sum; /* sum of weighted rewards */
+    float all_sum; /* sum of weighted rewards */
+    float older_sum;
     float newer_sum;
 };
 
+static void set_weights(float mismatch, float weight_of[GRRL_CONTEXT_PARTS + 1])
+{
+    weight_of[0] = 1.0f;
+    for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; i++)
+        weight_of[i] = weight_of[i - 1] * mismatch;
+}
+
 /* Sums the evidence for one context, and finds the closest case for the estimate. */
 static void gather_evidence(const struct grrl_case_base *base,
-                            const struct grrl_case_config *config,
-                            const struct grrl_context *context, struct evidence *evidence,
-                            struct grrl_estimate *estimate)
+                            const struct grrl_case_config *config, uint32_t key,
+                            struct evidence *evidence, struct grrl_estimate *estimate)
 {
-    float weight_of[GRRL_CONTEXT_PARTS + 1] = {1.0f};
-    for (unsigned i = 1; i <= GRRL_CONTEXT_PARTS; i++)
-        weight_of[i] = weight_of[i - 1] * config->mismatch;
-    float p_known = probability_as_known(base);
-    float closest_weight = 0.0f;
-    *evidence = (struct evidence){.older = 0.0f};
+    float weight_of[GRRL_CONTEXT_PARTS + 1];
+    float general_of[GRRL_CONTEXT_PARTS + 1];
+    set_weights(config->mismatch, weight_of);
+    set_weights(config->general_mismatch, general_of);
+    uint32_t bits = grrl_context_key_bits(config->parts);
+    uint8_t closest_rewards = 0;
+    *evidence = (struct evidence){.all = 0.0f};
     *estimate = (struct grrl_estimate){.closest = GRRL_NO_CASE, .mismatches = UINT8_MAX};
     for (uint32_t i = 0; i < base->n; i++) {
         const struct grrl_case *met = &base->cases[i];
-        uint8_t mismatches = count_mismatches(&met->context, context, config->parts);
-        float older = (float)at_most(met->n, config->memory);
-        float newer = (1.0f + config->present) * (float)met->n_new;
-        evidence->older += weight_of[mismatches] * older;
-        evidence->newer += weight_of[mismatches] * newer;
-        evidence->older_sum += weight_of[mismatches] * older * met->value;
-        evidence->newer_sum += weight_of[mismatches] * newer * met->value_new;
-        float weight = p_known * older + newer;
+        unsigned mismatches = grrl_context_differences(met->key, key, bits);
+        float all = general_of[mismatches] * (float)met->n_all;
+        float older = weight_of[mismatches] * (float)at_most(met->n, config->memory);
+        evidence->all += all;
+        evidence->all_sum += all * met->value_all;
+        evidence->older += older;
+        evidence->older_sum += older * met->value;
+        if (met->n_new > 0) {
+            float newer = weight_of[mismatches] * (1.0f + config->present) * (float)met->n_new;
+            evidence->newer += newer;
+            evidence->newer_sum += newer * met->value_new;
+        }
         if (mismatches < estimate->mismatches ||
-            (mismatches == estimate->mismatches && weight > closest_weight)) {
-            estimate->mismatches = mismatches;
+            (mismatches == estimate->mismatches && met->n_all > closest_rewards)) {
+            estimate->mismatches = (uint8_t)mismatches;
             estimate->closest = i;
-            closest_weight = weight;
+            closest_rewards = met->n_all;
         }
     }
 }
 
-/* The mean over the prior and the rewards; older ones are weighted by P(object as known). */
-static float mean(const struct grrl_case_config *config, const struct evidence *evidence,
-                  float p_known)
+/* What counts in an estimate: the rewards of all objects with a limited weight, older rewards by
+ * P(object as known), and newer ones. */
+struct mean {
+    float value;
+    float weight;
+};
+
+static struct mean mean_of(const struct grrl_case_config *config, const struct evidence *evidence,
+                           float p_known)
 {
-    float sum = config->prior_weight * config->prior + p_known * evidence->older_sum;
-    float weight = config->prior_weight + p_known * evidence->older;
-    return (sum + evidence->newer_sum) / (weight + evidence->newer);
+    float general = evidence->all < config->general ? evidence->all : config->general;
+    float prior = config->prior;
+    if (general > 0.0f)
+        prior = (config->prior_weight * prior + evidence->all_sum) /
+                (config->prior_weight + evidence->all);
+    float prior_weight = config->prior_weight + general;
+    float weight = prior_weight + p_known * evidence->older + evidence->newer;
+    float sum = prior_weight * prior + p_known * evidence->older_sum + evidence->newer_sum;
+    return (struct mean){sum / weight, weight};
 }
 
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
                          const struct grrl_context *context, struct grrl_estimate *estimate)
 {
     struct evidence evidence;
-    gather_evidence(base, config, context, &evidence, estimate);
-    float p_known = probability_as_known(base);
-    float weight = config->prior_weight + p_known * evidence.older + evidence.newer;
-    float margin = config->bound / grrl_sqrt(weight);
-    estimate->value = mean(config, &evidence, p_known);
-    estimate->lower = estimate->value - margin;
-    estimate->upper = estimate->value + margin;
-    estimate->weight = weight;
+    gather_evidence(base, config, grrl_context_key(context), &evidence, estimate);
+    struct mean mean = mean_of(config, &evidence, probability_as_known(base));
+    float margin = config->bound / grrl_sqrt(mean.weight);
+    estimate->value = mean.value;
+    estimate->lower = mean.value - margin;
+    estimate->upper = mean.value + margin;
+    estimate->weight = mean.weight;
 }
 
 /* The log likelihood that a push finds something (or nothing), given the expected reward. The
@@ -178,24 +164,25 @@ static float log_likelihood(float expected, bool found)
  * found something counts, not how much: a first push that reveals four links instead of two does
  * not indicate another object. */
 static void update_log_odds(struct grrl_case_base *base, const struct grrl_case_config *config,
-                            const struct grrl_context *context, float reward)
+                            uint32_t key, float reward)
 {
     struct evidence evidence;
     struct grrl_estimate estimate;
-    gather_evidence(base, config, context, &evidence, &estimate);
+    gather_evidence(base, config, key, &evidence, &estimate);
     bool found = reward > 0.0f;
-    float log_odds = base->log_odds + log_likelihood(mean(config, &evidence, 1.0f), found) -
-                     log_likelihood(mean(config, &evidence, 0.0f), found);
+    float log_odds = base->log_odds +
+                     log_likelihood(mean_of(config, &evidence, 1.0f).value, found) -
+                     log_likelihood(mean_of(config, &evidence, 0.0f).value, found);
     log_odds = log_odds > config->confidence ? config->confidence : log_odds;
     base->log_odds = log_odds < MIN_LOG_ODDS ? MIN_LOG_ODDS : log_odds;
 }
 
 /* Finds the case with exactly this context, or adds one without rewards. */
-static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_context *context)
+static uint32_t find_or_add(struct grrl_case_base *base, uint32_t key)
 {
     uint32_t oldest = 0;
     for (uint32_t i = 0; i < base->n; i++) {
-        if (memcmp(&base->cases[i].context, context, sizeof *context) == 0)
+        if (base->cases[i].key == key)
             return i;
         if (base->cases[i].used_at < base->cases[oldest].used_at)
             oldest = i;
@@ -206,18 +193,32 @@ static uint32_t find_or_add(struct grrl_case_base *base, const struct grrl_conte
     } else {
         base->evictions++;
     }
-    base->cases[oldest] = (struct grrl_case){.context = *context};
+    base->cases[oldest] = (struct grrl_case){.key = key};
     return oldest;
+}
+
+/* Adds a reward to those ever met. A full case halves its counts, so that later rewards count. */
+static void add_to_all(struct grrl_case *met, float reward)
+{
+    if (met->n_all == GRRL_CASE_REWARDS) {
+        met->n_all /= 2;
+        met->n_found /= 2;
+    }
+    met->n_all++;
+    met->n_found = (uint8_t)(met->n_found + (reward > 0.0f));
+    met->value_all += (reward - met->value_all) / (float)met->n_all;
 }
 
 uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
                           const struct grrl_context *context, float reward)
 {
-    update_log_odds(base, config, context, reward);
+    uint32_t key = grrl_context_key(context);
+    update_log_odds(base, config, key, reward);
     if (base->capacity == 0)
         return GRRL_NO_CASE;
-    uint32_t index = find_or_add(base, context);
+    uint32_t index = find_or_add(base, key);
     struct grrl_case *met = &base->cases[index];
+    add_to_all(met, reward);
     met->n_new = (uint8_t)at_most(met->n_new + 1u, config->memory);
     met->value_new += (reward - met->value_new) / (float)met->n_new;
     met->used_at = ++base->clock;

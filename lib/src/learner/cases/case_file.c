@@ -7,12 +7,7 @@
 #include "learner/legacy_store.h"
 
 /* The layout is described in case_base.h. */
-enum {
-    FILE_VERSION = 2,
-    HEADER_BYTES = 20,
-    LOG_ODDS_BYTES = 4,
-    CASE_BYTES = GRRL_CONTEXT_PARTS + 14
-};
+enum { FILE_VERSION = 3, HEADER_BYTES = 20, LOG_ODDS_BYTES = 4, CASE_BYTES = 24 };
 
 _Static_assert((int)GRRL_RECORD_BYTES >= (int)HEADER_BYTES &&
                    (int)GRRL_RECORD_BYTES >= (int)CASE_BYTES,
@@ -37,11 +32,13 @@ enum grrl_status grrl_cases_save(const struct grrl_case_base *base, const struct
     }
     for (uint32_t i = 0; i < base->n && status == GRRL_OK; i++) {
         const struct grrl_case *met = &base->cases[i];
-        for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
-            grrl_record_put(&record, met->context.part[part], 1);
+        grrl_record_put(&record, met->key, 4);
+        grrl_record_put(&record, met->n_all, 1);
+        grrl_record_put(&record, met->n_found, 1);
         grrl_record_put(&record, met->n, 1);
         grrl_record_put(&record, met->n_new, 1);
         grrl_record_put(&record, met->used_at, 4);
+        grrl_record_put_float(&record, met->value_all);
         grrl_record_put_float(&record, met->value);
         grrl_record_put_float(&record, met->value_new);
         status = grrl_record_write(&record);
@@ -94,20 +91,21 @@ static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odd
     return fine ? GRRL_OK : GRRL_ERR_CORRUPT;
 }
 
-static bool is_context(const struct grrl_context *context)
+static bool is_key(uint32_t key)
 {
+    struct grrl_context context;
+    grrl_context_of_key(key, &context);
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        if (context->part[i] > grrl_context_max[i])
+        if (context.part[i] > grrl_context_max[i])
             return false;
-    return true;
+    return grrl_context_key(&context) == key;
 }
 
 /* Whether a case is consistent with those read so far: contexts and times must be unique. */
 static bool is_new(const struct grrl_case_base *base, const struct grrl_case *met)
 {
     for (uint32_t i = 0; i < base->n; i++)
-        if (memcmp(&base->cases[i].context, &met->context, sizeof met->context) == 0 ||
-            base->cases[i].used_at == met->used_at)
+        if (base->cases[i].key == met->key || base->cases[i].used_at == met->used_at)
             return false;
     return true;
 }
@@ -118,15 +116,18 @@ static enum grrl_status read_case(struct grrl_case_base *base, struct grrl_recor
     if (grrl_record_read(record, CASE_BYTES + GRRL_RECORD_CRC_BYTES) != GRRL_OK)
         return GRRL_ERR_IO;
     struct grrl_case met = {.n = 0};
-    for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
-        met.context.part[part] = (uint8_t)grrl_record_take(record, 1);
+    met.key = (uint32_t)grrl_record_take(record, 4);
+    met.n_all = (uint8_t)grrl_record_take(record, 1);
+    met.n_found = (uint8_t)grrl_record_take(record, 1);
     met.n = (uint8_t)grrl_record_take(record, 1);
     met.n_new = (uint8_t)grrl_record_take(record, 1);
     met.used_at = (uint32_t)grrl_record_take(record, 4);
+    met.value_all = grrl_record_take_float(record);
     met.value = grrl_record_take_float(record);
     met.value_new = grrl_record_take_float(record);
-    bool fine = grrl_record_check(record, CASE_BYTES) == GRRL_OK && is_context(&met.context) &&
-                (met.n > 0 || met.n_new > 0) && met.used_at <= clock && is_within_max(met.value) &&
+    bool fine = grrl_record_check(record, CASE_BYTES) == GRRL_OK && is_key(met.key) &&
+                met.n_all > 0 && met.n_all <= GRRL_CASE_REWARDS && met.n_found <= met.n_all &&
+                met.used_at <= clock && is_within_max(met.value_all) && is_within_max(met.value) &&
                 is_within_max(met.value_new) && is_new(base, &met);
     if (!fine)
         return GRRL_ERR_CORRUPT;

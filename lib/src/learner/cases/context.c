@@ -10,6 +10,12 @@
 /* A neighbour counts as ahead or behind within about 70 degrees of the push. */
 #define AHEAD_COSINE 0.35f
 
+/* Where the aspect of a link changes its class, and how uneven its features must lie to count as
+ * skewed: the mean cube of their distance, relative to the mean square to the power 1.5. */
+#define STOUT 0.35f
+#define ROUND 0.6f
+#define SKEWED 0.15f
+
 /* A smaller ratio of lengths may be noise. */
 #define LONGER 1.15f
 
@@ -26,7 +32,51 @@ const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_PRISMATIC] = MAX_JOINTS,
     [GRRL_CONTEXT_OTHERS_TRIED] = MAX_OTHERS_TRIED,
     [GRRL_CONTEXT_LONGER] = MAX_LONGER,
+    [GRRL_CONTEXT_ASPECT] = 2,
+    [GRRL_CONTEXT_SKEW] = 2,
 };
+
+/* Where a part begins in a key: parts of 3 bits at 18 and 22, all others in pairs of bits. */
+static const uint8_t key_shift[GRRL_CONTEXT_PARTS] = {
+    [GRRL_CONTEXT_DIRECTION] = 0,
+    [GRRL_CONTEXT_LENGTH] = 18,
+    [GRRL_CONTEXT_TRIED] = 2,
+    [GRRL_CONTEXT_NEIGHBOURS] = 4,
+    [GRRL_CONTEXT_NEIGHBOUR_LENGTH] = 22,
+    [GRRL_CONTEXT_REVOLUTE] = 6,
+    [GRRL_CONTEXT_PRISMATIC] = 8,
+    [GRRL_CONTEXT_OTHERS_TRIED] = 10,
+    [GRRL_CONTEXT_LONGER] = 12,
+    [GRRL_CONTEXT_ASPECT] = 14,
+    [GRRL_CONTEXT_SKEW] = 16,
+};
+
+static uint32_t part_mask(unsigned part)
+{
+    return grrl_context_max[part] > 3 ? 7u : 3u;
+}
+
+uint32_t grrl_context_key(const struct grrl_context *context)
+{
+    uint32_t key = 0;
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        key |= (uint32_t)context->part[i] << key_shift[i];
+    return key;
+}
+
+void grrl_context_of_key(uint32_t key, struct grrl_context *context)
+{
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        context->part[i] = (uint8_t)(key >> key_shift[i] & part_mask(i));
+}
+
+uint32_t grrl_context_key_bits(uint16_t parts)
+{
+    uint32_t bits = 0;
+    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
+        bits |= ((uint32_t)parts >> i & 1u) != 0 ? part_mask(i) << key_shift[i] : 0u;
+    return bits;
+}
 
 static uint8_t at_most(unsigned x, unsigned most)
 {
@@ -122,6 +172,8 @@ static void describe_link(const struct grrl_model *model, float large_m, uint8_t
     context->part[GRRL_CONTEXT_REVOLUTE] = at_most(joints[GRRL_REVOLUTE], MAX_JOINTS);
     context->part[GRRL_CONTEXT_PRISMATIC] = at_most(joints[GRRL_PRISMATIC], MAX_JOINTS);
     context->part[GRRL_CONTEXT_LONGER] = at_most(longer, MAX_LONGER);
+    context->part[GRRL_CONTEXT_ASPECT] = (uint8_t)((self->width_m > STOUT * self->length_m) +
+                                                   (self->width_m > ROUND * self->length_m));
 }
 
 /* Whether neighbours lie ahead of and behind a push in this direction. */
@@ -142,6 +194,25 @@ static uint8_t neighbours_along(const struct grrl_model *model, uint8_t body,
         sides |= along < -threshold ? (unsigned)BEHIND : 0u;
     }
     return (uint8_t)sides;
+}
+
+/* Whether a body's features thin out against a direction (1), along it (2), or neither (0). */
+static uint8_t skew_along(const struct grrl_model *model, uint8_t body, struct grrl_vec2 direction)
+{
+    float square = 0.0f;
+    float cube = 0.0f;
+    float n = 0.0f;
+    for (uint16_t i = 0; i < model->n_features; i++) {
+        if (model->feature_body[i] != body)
+            continue;
+        struct grrl_vec2 arm = grrl_vec2_sub(model->feature_m[i], model->body[body].centroid_m);
+        float along = grrl_vec2_dot(arm, direction);
+        square += along * along;
+        cube += along * along * along;
+        n += 1.0f;
+    }
+    float limit = n > 0.0f ? SKEWED * square * grrl_sqrt(square / n) : 0.0f;
+    return (uint8_t)(cube > limit ? 2 : cube < -limit);
 }
 
 /* 0 along the axis, 1 at 45 degrees, 2 perpendicular. */
@@ -172,8 +243,10 @@ enum grrl_status grrl_context_of(const struct grrl_trial_attempts *attempts,
         contexts[d].part[GRRL_CONTEXT_DIRECTION] = direction_class(grrl_direction_deg[d]);
         contexts[d].part[GRRL_CONTEXT_TRIED] = at_most(tried, MAX_TRIED);
         contexts[d].part[GRRL_CONTEXT_OTHERS_TRIED] = at_most(all_tried - tried, MAX_OTHERS_TRIED);
-        contexts[d].part[GRRL_CONTEXT_NEIGHBOURS] =
-            neighbours_along(model, body, grrl_grounding_direction(&frame, d));
+        struct grrl_vec2 direction = grrl_grounding_direction(&frame, d);
+        contexts[d].part[GRRL_CONTEXT_NEIGHBOURS] = neighbours_along(model, body, direction);
+        if (model->n_joints == 0)
+            contexts[d].part[GRRL_CONTEXT_SKEW] = skew_along(model, body, direction);
     }
     return GRRL_OK;
 }

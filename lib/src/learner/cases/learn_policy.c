@@ -50,10 +50,13 @@ static void describe_actions(struct grrl_learn_policy *policy, const struct grrl
     grrl_attempts_update(&policy->attempts, view->model, view->large_m);
     policy->contexts.n_links = view->model->n_bodies;
     for (uint8_t i = 0; i < view->model->n_bodies; i++) {
-        enum grrl_status status = grrl_context_of(&policy->attempts, view->model, view->large_m, i,
-                                                  policy->contexts.action[i]);
+        struct grrl_context contexts[GRRL_DIRECTIONS];
+        enum grrl_status status =
+            grrl_context_of(&policy->attempts, view->model, view->large_m, i, contexts);
         assert(status == GRRL_OK); /* the body exists */
         (void)status;
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
+            policy->contexts.action[i][direction] = grrl_context_key(&contexts[direction]);
     }
 }
 
@@ -75,6 +78,45 @@ static bool is_known(const struct grrl_estimate *estimate)
     return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
 }
 
+static unsigned times_tried(uint32_t key)
+{
+    struct grrl_context context;
+    grrl_context_of_key(key, &context);
+    return context.part[GRRL_CONTEXT_TRIED];
+}
+
+/* Whether pushes already made may be chosen: where the configuration says so, or none is left. */
+static bool may_repeat(const struct grrl_learn_policy *policy)
+{
+    for (uint8_t link = 0; link < policy->contexts.n_links; link++)
+        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
+            if (times_tried(policy->contexts.action[link][direction]) == 0)
+                return policy->config.repeats != 0;
+    return true;
+}
+
+/* The estimates of all pushes of a link; equal contexts are looked up once. Returns how many are
+ * known. */
+static unsigned estimate_link(const struct grrl_learn_policy *policy, uint8_t link,
+                              struct grrl_estimate estimates[GRRL_DIRECTIONS])
+{
+    const uint32_t *keys = policy->contexts.action[link];
+    unsigned met = 0;
+    for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
+        uint8_t same = 0;
+        while (keys[same] != keys[direction])
+            same++;
+        struct grrl_context context;
+        grrl_context_of_key(keys[direction], &context);
+        if (same < direction)
+            estimates[direction] = estimates[same];
+        else
+            grrl_cases_estimate(&policy->cases, &policy->config, &context, &estimates[direction]);
+        met += is_known(&estimates[direction]);
+    }
+    return met;
+}
+
 void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_random *random,
                        struct grrl_choice *choice)
 {
@@ -84,22 +126,24 @@ void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_ran
     uint32_t ties = 0;
     unsigned met = 0;
     float best = 0.0f;
+    bool repeat = may_repeat(policy);
     for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
+        struct grrl_estimate estimates[GRRL_DIRECTIONS];
+        met += estimate_link(policy, link, estimates);
         for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
-            struct grrl_estimate estimate;
-            grrl_cases_estimate(&policy->cases, &policy->config,
-                                &policy->contexts.action[link][direction], &estimate);
-            met += is_known(&estimate);
-            if (ties == 0 || estimate.upper > best) {
+            const struct grrl_estimate *estimate = &estimates[direction];
+            if (!repeat && times_tried(policy->contexts.action[link][direction]) > 0)
+                continue;
+            if (ties == 0 || estimate->upper > best) {
                 ties = 0;
-                best = estimate.upper;
+                best = estimate->upper;
             }
             /* the kth of equal actions replaces the choice with probability 1 / k */
-            if (estimate.upper == best && grrl_random_below(random, ++ties) == 0) {
+            if (estimate->upper == best && grrl_random_below(random, ++ties) == 0) {
                 choice->link = link;
                 choice->direction = direction;
-                choice->reason = is_known(&estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
-                set_estimate(choice, &estimate);
+                choice->reason = is_known(estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
+                set_estimate(choice, estimate);
             }
         }
     }
@@ -112,14 +156,10 @@ void grrl_learn_explain(void *self, const struct grrl_view *view, struct grrl_ch
     describe_actions(policy, view);
     unsigned met = 0;
     for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
-            struct grrl_estimate estimate;
-            grrl_cases_estimate(&policy->cases, &policy->config,
-                                &policy->contexts.action[link][direction], &estimate);
-            met += is_known(&estimate);
-            if (link == choice->link && direction == choice->direction)
-                set_estimate(choice, &estimate);
-        }
+        struct grrl_estimate estimates[GRRL_DIRECTIONS];
+        met += estimate_link(policy, link, estimates);
+        if (link == choice->link)
+            set_estimate(choice, &estimates[choice->direction]);
     }
     choice->phi = (float)met / (float)(policy->contexts.n_links * GRRL_DIRECTIONS);
 }
@@ -129,9 +169,9 @@ void grrl_learn_learn(void *self, const struct grrl_outcome *outcome, struct grr
     struct grrl_learn_policy *policy = self;
     const struct grrl_choice *choice = &outcome->choice;
     grrl_attempts_add(&policy->attempts, outcome->body_number, choice->direction);
-    update->index = grrl_cases_learn(&policy->cases, &policy->config,
-                                     &policy->contexts.action[choice->link][choice->direction],
-                                     outcome->reward);
+    struct grrl_context context;
+    grrl_context_of_key(policy->contexts.action[choice->link][choice->direction], &context);
+    update->index = grrl_cases_learn(&policy->cases, &policy->config, &context, outcome->reward);
 }
 
 struct grrl_usage grrl_learn_usage(const void *self)

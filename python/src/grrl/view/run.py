@@ -74,6 +74,7 @@ class ModelSeen:
     ids: np.ndarray  # (n,) int32, ascending
     link_of: np.ndarray  # (n,) int8: index of a link, -1 background, -2 nothing known
     at: np.ndarray = field(default_factory=lambda: np.empty((0, 2), np.float32))  # then; NaN: unseen
+    places: tuple[np.ndarray, ...] = ()  # of motion_of
 
 
 @dataclass
@@ -126,21 +127,28 @@ class Frame:
     motion: np.ndarray = field(default_factory=lambda: np.empty((0, 3), np.float32))
 
 
+def _places(model: ModelSeen, ids: np.ndarray) -> tuple[np.ndarray, ...]:
+    """ids; which of them lie on which link (links, n); how many; where they were, 0 for the others.
+    Kept, for most frames see the same points."""
+    if model.places and np.array_equal(model.places[0], ids):
+        return model.places
+    place = np.minimum(np.searchsorted(model.ids, ids), model.ids.size - 1)
+    at = model.at[place]
+    good = (model.ids[place] == ids) & ~np.isnan(at[:, 0])
+    on = ((model.link_of[place] == np.arange(len(model.links))[:, None]) & good).astype(np.float64)
+    model.places = (ids, on, on.sum(axis=1), np.where(good, at.T, 0.0).astype(np.float64))
+    return model.places
+
+
 def motion_of(model: ModelSeen, ids: np.ndarray, xy: np.ndarray) -> np.ndarray:
     """(links, 3): the rigid motion of each link since the model; least squares over its points.
     A link with fewer than two points seen takes no motion."""
     n = len(model.links)
     if n == 0 or ids.size == 0 or model.at.shape[0] == 0:
         return np.zeros((n, 3), np.float32)
-    place = np.minimum(np.searchsorted(model.ids, ids), model.ids.size - 1)
-    link = model.link_of[place]
-    p = model.at[place]
-    good = (model.ids[place] == ids) & (link >= 0) & ~np.isnan(p[:, 0])
-    of_link = (link == np.arange(n)[:, None]) & good
-    px, py = np.where(good, p.T, 0.0).astype(np.float64)
+    _, on, count, (px, py) = _places(model, ids)
     qx, qy = xy.T.astype(np.float64)
-    sums = of_link @ np.stack([px, py, qx, qy, px * qx + py * qy, px * qy - py * qx], axis=1)
-    count = of_link.sum(axis=1)
+    sums = on @ np.stack([px, py, qx, qy, px * qx + py * qy, px * qy - py * qx], axis=1)
     mpx, mpy, mqx, mqy, dot, cross = sums.T / np.maximum(count, 1)
     angle = np.arctan2(cross - (mpx * mqy - mpy * mqx), dot - (mpx * mqx + mpy * mqy))
     c, s = np.cos(angle), np.sin(angle)

@@ -15,6 +15,10 @@
  * the weight of older rewards and raises that trial's, in proportion to P(object changed). Old
  * cases keep one reward, so that they still count where nothing else is known.
  *
+ * What all objects so far have in common outlives doubt. Each case also keeps the mean of all its
+ * rewards, and the mean of these over all cases, with a narrower kernel, is the prior of the object
+ * at hand. Its weight is limited, so a few rewards of this object outweigh it.
+ *
  * The memory is fixed and belongs to the caller. When it is full, the case that was met least
  * recently is evicted.
  *
@@ -32,24 +36,32 @@ GRRL_API_BEGIN
 
 /* Fill with grrl_case_config_default, then change what should differ. */
 struct grrl_case_config {
-    float prior;        /* expected reward where nothing was met; 0.5 */
-    float prior_weight; /* weight of the prior, in rewards, > 0; 1 */
-    float mismatch;     /* factor on a case's weight for each part that differs, [0, 1]; 0.2 */
-    float bound;        /* upper bound = estimate + bound / sqrt(weight), >= 0; 0.4 */
-    float confidence;   /* initial and highest log odds that the object is as known, >= 0; 0.5 */
-    float present;      /* extra weight of a reward from the running trial, >= 0; 3 */
-    uint8_t memory;     /* rewards a case remembers, old or new, >= 1; 5 */
-    uint16_t parts;     /* bit i: part i of a context counts; default all */
+    float prior;            /* expected reward where nothing was met; 0.5 */
+    float prior_weight;     /* weight of the prior, in rewards, > 0; 1 */
+    float mismatch;         /* factor on a case's weight for each part that differs, [0, 1]; 0.2 */
+    float general;          /* highest weight of all rewards as the object's prior, >= 0; 3 */
+    float general_mismatch; /* as mismatch, in that prior, [0, 1]; 0.1 */
+    float bound;            /* upper bound = estimate + bound / sqrt(weight), >= 0; 0.4 */
+    float confidence; /* initial and highest log odds that the object is as known, >= 0; 0.5 */
+    float present;    /* extra weight of a reward from the running trial, >= 0; 3 */
+    uint8_t memory;   /* rewards a case remembers, old or new, >= 1; 5 */
+    uint8_t repeats;  /* 0: no push again while its link stays the same and others are left */
+    uint16_t parts;   /* bit i: part i of a context counts; default all */
 };
 
 #define GRRL_ALL_CONTEXT_PARTS ((1u << GRRL_CONTEXT_PARTS) - 1u)
 
+enum { GRRL_CASE_REWARDS = 50 };
+
 struct grrl_case {
-    struct grrl_context context;
+    uint32_t key;     /* of the context */
+    uint8_t n_all;    /* rewards ever; halved at GRRL_CASE_REWARDS */
+    uint8_t n_found;  /* of these, the pushes that revealed something */
     uint8_t n;        /* rewards from earlier trials, at most `memory` */
     uint8_t n_new;    /* rewards from this trial, at most `memory` */
-    float value;      /* running mean of the former, over about the latest `memory` */
-    float value_new;  /* running mean of the latter */
+    float value_all;  /* running mean of rewards ever */
+    float value;      /* of rewards from earlier trials, over about the latest `memory` */
+    float value_new;  /* of rewards from this trial */
     uint32_t used_at; /* value of the clock when last met */
 };
 
@@ -59,7 +71,7 @@ struct grrl_case_base {
     uint32_t capacity;
     uint32_t high_water; /* largest number of cases so far */
     uint32_t evictions;
-    float log_odds; /* that the object is as known: -4 to confidence; 0 at first */
+    float log_odds; /* that the object is as known: -1 to confidence; 0 at first */
     /* private */
     uint32_t clock;
     struct grrl_case *cases;
@@ -95,7 +107,7 @@ void grrl_cases_clear(struct grrl_case_base *base);
  * effect. */
 void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config);
 
-/* Cost: linear in cases, about 40 instructions each. */
+/* Cost: linear in cases, about 50 instructions each. */
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
                          const struct grrl_context *context, struct grrl_estimate *estimate);
 
@@ -109,8 +121,8 @@ uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_co
 /*
  * Writes the cases as bytes, in the manner of experience.h. Header: magic "GRRLcas" and zero,
  * version (2 bytes), parts of a context (1), zero (1), cases (4), clock (4). Then log odds (4).
- * Each case: its context, n (1), n_new (1), used at (4), value (4), value_new (4). A running CRC-32
- * (4) follows each of these. GRRL_ERR_IO.
+ * Each case: its key (4), n_all (1), n_found (1), n (1), n_new (1), used at (4), value_all (4),
+ * value (4), value_new (4). A running CRC-32 (4) follows each of these. GRRL_ERR_IO.
  */
 GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base,
                                                const struct grrl_io *io);
@@ -119,6 +131,18 @@ GRRL_MUST_USE enum grrl_status grrl_cases_save(const struct grrl_case_base *base
  * grrl_experience_load. */
 GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
                                                const struct grrl_io *io, uint32_t *lost);
+
+/*
+ * Adds the cases of another base, so that two lives become one; which is added to which makes no
+ * difference. Rewards in the same context are pooled, and both lives end now: a case is as old as
+ * in the life that met it last. Keeps the `most` cases that were met last.
+ * Both bases start a new trial. GRRL_ERR_FULL: the first has no room for the cases of both. Cost:
+ * quadratic in cases.
+ */
+GRRL_MUST_USE enum grrl_status grrl_cases_merge(struct grrl_case_base *base,
+                                                struct grrl_case_base *from,
+                                                const struct grrl_case_config *config,
+                                                uint32_t most);
 
 GRRL_API_END
 

@@ -26,6 +26,9 @@ enum grrl_context_part {
     GRRL_CONTEXT_PRISMATIC,        /* prismatic joints of the link, up to 2 */
     GRRL_CONTEXT_OTHERS_TRIED,     /* earlier pushes of the link in other directions, up to 2 */
     GRRL_CONTEXT_LONGER,           /* links at least 15% longer, up to 2 */
+    GRRL_CONTEXT_ASPECT, /* of the link's width to its length: 0 up to 0.35, 1 up to 0.6, 2 */
+    GRRL_CONTEXT_SKEW,   /* before any joint is known: the features thin out, 1 against the push, 2
+                            along it, 0 neither */
     GRRL_CONTEXT_PARTS
 };
 
@@ -35,6 +38,25 @@ struct grrl_context {
 
 /* The largest value of each part of a context. */
 extern const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS];
+
+/* A context in one number, 2 or 3 bits a part; equal contexts have equal keys. */
+uint32_t grrl_context_key(const struct grrl_context *context);
+
+/* The context with this key. */
+void grrl_context_of_key(uint32_t key, struct grrl_context *context);
+
+/* The bits of a key that hold the parts of this set (bit i: part i). */
+uint32_t grrl_context_key_bits(uint16_t parts);
+
+/* The number of parts in which two keys differ, within these bits. */
+static inline unsigned grrl_context_differences(uint32_t a, uint32_t b, uint32_t bits)
+{
+    uint32_t x = (a ^ b) & bits;
+    x = (x | x >> 1 | (x >> 2 & UINT32_C(0x440000))) & UINT32_C(0x455555); /* lowest bit of each */
+    x = (x & UINT32_C(0x33333333)) + (x >> 2 & UINT32_C(0x33333333));
+    x = (x + (x >> 4)) & UINT32_C(0x0f0f0f0f);
+    return (unsigned)(x * UINT32_C(0x01010101) >> 24);
+}
 
 /* Pushes of one link since its length or joints last changed. */
 struct grrl_attempts {

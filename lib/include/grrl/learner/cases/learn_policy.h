@@ -16,10 +16,10 @@
 
 GRRL_API_BEGIN
 
-/* The contexts of all actions of a state: action[link][direction]. */
+/* The contexts of all actions of a state, as keys: action[link][direction]. */
 struct grrl_contexts {
     uint8_t n_links;
-    struct grrl_context action[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
+    uint32_t action[GRRL_MAX_LINKS][GRRL_DIRECTIONS];
 };
 
 /* The policy's memory; the cases follow it. Its configuration is a struct grrl_case_config. */

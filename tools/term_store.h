@@ -1,0 +1,16 @@
+/* term_store.h: what grrl-term does with the stores of the policy learn. False after an error,
+ * which is printed. */
+#ifndef GRRL_TOOLS_TERM_STORE_H
+#define GRRL_TOOLS_TERM_STORE_H
+
+#include <stdbool.h>
+
+#include "grrl/learner/cases/case_base.h"
+
+bool term_store_rules(const char *path);
+bool term_store_merge(const char *a, const char *b, const char *out);
+
+/* Prints the cases as rules, the best first. */
+void term_rules_print(const struct grrl_case_base *base);
+
+#endif
