@@ -423,7 +423,8 @@ static void a_hand_that_leaves_is_not_joined(void **state)
     struct grrl_perception_config config = pictures();
     begin(&config, "a_hand_that_leaves_is_not_joined");
     if (GRRL_MAX_KEYFRAMES < 48) {
-        print_message("skipped: few of %d keyframes show how the hand leaves\n", GRRL_MAX_KEYFRAMES);
+        print_message("skipped: few of %d keyframes show how the hand leaves\n",
+                      GRRL_MAX_KEYFRAMES);
         skip();
     }
     for (int i = 0; i < 5; i++)
