@@ -12,7 +12,7 @@ namespace grrl_experiment::recordings
 namespace
 {
 
-void add(const Outcome &outcome, Kind kind, Figures &f)
+void add(const Outcome &outcome, Kind kind, bool fixed, Figures &f)
 {
     const Score &score = outcome.score;
     bool false_called = score.false_called > 0;
@@ -26,6 +26,8 @@ void add(const Outcome &outcome, Kind kind, Figures &f)
     if (kind == Kind::MECHANISM) {
         if (score.joints > 0) /* else there was nothing to be told */
             f.right += {score.right, 1};
+        if (score.joints > 0 && fixed)
+            f.fixed += {score.right, 1};
         f.mechanism_false += {false_called, 1};
     } else if (kind == Kind::INDEPENDENT) {
         f.independent_called += {false_called, 1};
@@ -38,6 +40,13 @@ void add(const Outcome &outcome, Kind kind, Figures &f)
         for (size_t i = 0; i < std::size(bins); i++)
             if (called.probability >= bins[i].low && called.probability < bins[i].high)
                 f.calibration[i] += {called.right, 1};
+}
+
+/* The camera is at its usual level, at rest and straight above. */
+bool is_fixed(const std::string &conditions)
+{
+    return conditions.find("camera=") == std::string::npos ||
+           conditions.find("camera=fixed") != std::string::npos;
 }
 
 std::string cell(const Share &share)
@@ -77,6 +86,7 @@ void print_summary(std::FILE *file, const Figures *f)
         Share Figures::*share;
     } lines[] = {
         {"one mechanism: right structure", &Figures::right},
+        {"the same, camera at rest", &Figures::fixed},
         {"one mechanism: some false joint", &Figures::mechanism_false},
         {"independent: some joint >= .5", &Figures::independent_called},
         {"independent: some joint >= .95", &Figures::independent_sure},
@@ -147,7 +157,7 @@ Figures figures(const std::vector<Result> &results, Method method, const std::st
         bool wanted = (conditions.empty() || conditions == result.cell->conditions) &&
                       (object.empty() || object == result.cell->object->name);
         if (wanted)
-            add(result.of[method], result.cell->object->kind, f);
+            add(result.of[method], result.cell->object->kind, is_fixed(result.cell->conditions), f);
     }
     return f;
 }

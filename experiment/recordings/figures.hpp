@@ -36,6 +36,7 @@ struct Figures {
     int recordings = 0;
     Share failed; /* no answer */
     Share right;  /* mechanisms with the right structure */
+    Share fixed;  /* the same, in front of a camera at rest */
     Share mechanism_false;
     Share missed;             /* of all true joints */
     Share independent_right;  /* bodies right and no joint */

@@ -25,7 +25,7 @@ def assert_same(model, answer):
     assert model.counts["tracks"] == answer["tracks"]
     for name in ("outliers", "refused", "beyond_capacity"):
         assert model.counts[name] == answer["dropped"][name]
-    assert {k: model.counts[k] for k in ("empty", "marked", "frozen")} == answer["not_visible"]
+    assert {k: model.counts[k] for k in ("empty", "marked", "frozen", "beyond")} == answer["not_visible"]
     assert len(model.warnings) == len(answer["warnings"])
     assert len(model.bodies) == len(answer["bodies"])
     for body, said in zip(model.bodies, answer["bodies"]):
