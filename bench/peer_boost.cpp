@@ -1,5 +1,6 @@
-// Boost Graph Library: vf2_graph_iso and vf2_subgraph_mono, as one would use them who matches a graph
-// more than once: the order of its vertices is made with it and kept, and counts are compared first.
+// Boost Graph Library: vf2_graph_iso and vf2_subgraph_mono, as one would use them who matches a
+// graph more than once: the order of its vertices is made with it and kept, and counts are compared
+// first.
 #include <vector>
 
 #include <boost/graph/adjacency_list.hpp>

@@ -222,6 +222,25 @@ grrl_options_result parse_merge(int argc, char **argv, Options &options)
     return result;
 }
 
+grrl_options_result parse_rows(const grrl_option *rows, size_t n, int argc, char **argv,
+                               const Options &options)
+{
+    const std::string outro = help_after_options();
+    const grrl_program program = {
+        "grrl-experiment",
+        "grrl-experiment (--figure NAME | --object OBJECT) --out DIR [OPTION]...\n"
+        "       grrl-experiment merge --out DIR PART...",
+        "Runs policies that discover the structure of objects over many trials, and compares\n"
+        "them: learning curves with intervals, and transfer.\n",
+        outro.c_str(),
+        0,
+        nullptr,
+    };
+    grrl_options_result result = grrl_options_parse(&program, rows, n, argc, argv, nullptr);
+    const char *wrong = result == GRRL_OPTIONS_RUN ? contradiction(options) : nullptr;
+    return wrong == nullptr ? result : grrl_options_wrong(&program, wrong);
+}
+
 } // namespace
 
 bool split_pretrain(const std::string &text, std::string &object, int &trials)
@@ -315,21 +334,7 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                          "or grid: many worlds",
                          take_world, &o.worlds),
     };
-    const std::string outro = help_after_options();
-    const grrl_program program = {
-        "grrl-experiment",
-        "grrl-experiment (--figure NAME | --object OBJECT) --out DIR [OPTION]...\n"
-        "       grrl-experiment merge --out DIR PART...",
-        "Runs policies that discover the structure of objects over many trials, and compares\n"
-        "them: learning curves with intervals, and transfer.\n",
-        outro.c_str(),
-        0,
-        nullptr,
-    };
-    grrl_options_result result =
-        grrl_options_parse(&program, rows, std::size(rows), argc, argv, nullptr);
-    const char *wrong = result == GRRL_OPTIONS_RUN ? contradiction(options) : nullptr;
-    return wrong == nullptr ? result : grrl_options_wrong(&program, wrong);
+    return parse_rows(rows, std::size(rows), argc, argv, options);
 }
 
 } // namespace grrl_experiment

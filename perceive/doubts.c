@@ -29,7 +29,7 @@ enum { LEAST_STRAYS = 2 };
 static void doubt_lost(const struct grrl_tracks *tracks, struct grrl_warnings *warnings)
 {
     const struct grrl_tracks_lost *lost = &tracks->lost;
-    size_t all = tracks->n_points + lost->empty + lost->marked + lost->frozen;
+    size_t all = tracks->n_points + lost->empty + lost->marked + lost->frozen + lost->beyond;
     if (lost->empty > 0)
         grrl_warn(warnings, "%zu of %zu positions are empty or NaN: taken as not visible",
                   lost->empty, all);
@@ -43,6 +43,12 @@ static void doubt_lost(const struct grrl_tracks *tracks, struct grrl_warnings *w
                   "%zu of %zu positions repeat the previous one exactly while other points "
                   "scatter: taken as not visible",
                   lost->frozen, all);
+    if (lost->beyond > 0)
+        grrl_warn(
+            warnings,
+            "%zu of %zu positions are beyond the horizon of the table: left out; are the four "
+            "points right?",
+            lost->beyond, all);
 }
 
 static void doubt_damage(const struct grrl_tracks_log *log, struct grrl_warnings *warnings)

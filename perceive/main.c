@@ -146,6 +146,9 @@ static const char *reason(enum grrl_run_result result, enum grrl_status status)
         return "--noise auto: the points do not scatter, or are rounded; give --noise X";
     case GRRL_RUN_TOO_FAR:
         return "every point lies too far from the origin: pixels or millimetres? See --unit";
+    case GRRL_RUN_BEYOND:
+        return "--rectify: every point lies beyond the horizon of the table; are the four points "
+               "right?";
     case GRRL_RUN_NOTHING_SEEN:
         return "no point is visible in any frame";
     case GRRL_RUN_OUT_OF_MEMORY:
@@ -170,7 +173,8 @@ static int perceive_tracks(const struct grrl_perceive_options *options)
                                                   options->unit != GRRL_UNIT_AS_IN_FILE,
                                      .profile = options->profile,
                                      .noise = options->noise,
-                                     .noise_from_points = options->noise_from_points};
+                                     .noise_from_points = options->noise_from_points,
+                                     .rectify = options->rectifies ? &options->rectify : NULL};
     enum grrl_run_result result = grrl_run_tracks(&run, &config, &tracks);
     int status =
         result == GRRL_RUN_FINE ? write_report(options, &run) : fail(reason(result, run.status));

@@ -57,6 +57,15 @@ static const char *take_noise(void *context, const char *text)
                : "a number above 0, or auto";
 }
 
+static const char *take_rectify(void *context, const char *text)
+{
+    struct grrl_perceive_options *options = context;
+    struct grrl_rectify_point point[GRRL_RECTIFY_POINTS];
+    const char *wrong = grrl_rectify_parse(text, point);
+    options->rectifies = true;
+    return wrong != NULL ? wrong : grrl_rectify_from(point, &options->rectify);
+}
+
 /* Pictures are always SVG; a name with another extension would mislead the next program. */
 static const char *take_svg(void *context, const char *text)
 {
@@ -90,7 +99,11 @@ static const char *contradiction(const struct grrl_perceive_options *options)
         return "--noise auto does not work with --handle FILE: more than noise bends a trajectory";
     if (options->handle != NULL && options->unit == GRRL_UNIT_PX)
         return "--handle FILE is in m or mm";
-    if (options->profile == GRRL_PROFILE_CAMERA &&
+    if (options->rectifies && (options->log != NULL || options->handle != NULL))
+        return "--rectify is for a file of tracks in pixels";
+    if (options->rectifies && options->unit == GRRL_UNIT_PX)
+        return "with --rectify the unit is that of the table: --unit m or mm";
+    if (options->profile == GRRL_PROFILE_CAMERA && !options->rectifies &&
         (options->log != NULL || options->unit == GRRL_UNIT_M || options->unit == GRRL_UNIT_MM))
         return "--profile camera is for positions in pixels";
     return NULL;
@@ -116,6 +129,10 @@ enum grrl_options_result grrl_perceive_options_parse(int argc, char **argv,
         grrl_option_call("noise", "X|auto",
                          "standard deviation of a point, in the unit of the file; auto: measure it",
                          take_noise, options),
+        grrl_option_call("rectify", "PLACES",
+                         "four pixels and their positions on the table in m (or --unit mm),\n"
+                         "\"PX,PY=X,Y ..\": the tracks are in pixels, the answer is on the table",
+                         take_rectify, options),
         grrl_option_flag("json", "print JSON", &options->json),
         grrl_option_call("svg", "FILE", "draw features, bodies and joints", take_svg,
                          &options->svg),

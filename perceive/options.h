@@ -17,6 +17,8 @@ struct grrl_perceive_options {
     enum grrl_profile profile;
     float noise; /* in the unit of the file; 0: that of the profile */
     bool noise_from_points;
+    bool rectifies;
+    struct grrl_rectify rectify;
     int trial; /* of a log; 0: the last */
     bool json;
     const char *svg;    /* NULL: no picture */

@@ -105,10 +105,12 @@ static void print_dropped(FILE *file, const struct grrl_report *report)
                   "  \"dropped\": {\"outliers\": %u, \"refused\": %u, \"beyond_capacity\": %zu, "
                   "\"lost\": %zu, \"percent\": %.4g},\n",
                   (unsigned)counts->outliers, (unsigned)counts->refused,
-                  out->n_points + counts->overflow, lost->marked + lost->frozen,
+                  out->n_points + counts->overflow, lost->marked + lost->frozen + lost->beyond,
                   grrl_report_dropped_percent(report));
-    (void)fprintf(file, "  \"not_visible\": {\"empty\": %zu, \"marked\": %zu, \"frozen\": %zu},\n",
-                  lost->empty, lost->marked, lost->frozen);
+    (void)fprintf(
+        file,
+        "  \"not_visible\": {\"empty\": %zu, \"marked\": %zu, \"frozen\": %zu, \"beyond\": %zu},\n",
+        lost->empty, lost->marked, lost->frozen, lost->beyond);
     (void)fprintf(file, "  \"left_out\": {\"tracks\": %zu, \"percent\": %.4g, \"points\": [",
                   out->n, report->tracks > 0 ? 100.0 * (double)out->n / report->tracks : 0.0);
     for (size_t i = 0; i < out->n; i++)

@@ -31,7 +31,8 @@ double grrl_report_dropped_percent(const struct grrl_report *report)
 {
     const struct grrl_perception_counts *counts = report->counts;
     const struct grrl_tracks *tracks = report->recording;
-    size_t gone = tracks->left_out.n_points + tracks->lost.marked + tracks->lost.frozen;
+    const struct grrl_tracks_lost *lost = &tracks->lost;
+    size_t gone = tracks->left_out.n_points + lost->marked + lost->frozen + lost->beyond;
     size_t all = tracks->n_points + gone;
     double dropped = (double)gone + (double)counts->outliers + (double)counts->refused +
                      (double)counts->overflow;
@@ -157,6 +158,7 @@ void grrl_report_text(FILE *file, const struct grrl_report *report)
         file, "points dropped: %u outliers, %u refused, %zu beyond capacity, %zu lost (%.1f%%)\n",
         (unsigned)report->counts->outliers, (unsigned)report->counts->refused,
         report->recording->left_out.n_points + report->counts->overflow,
-        report->recording->lost.marked + report->recording->lost.frozen,
+        report->recording->lost.marked + report->recording->lost.frozen +
+            report->recording->lost.beyond,
         grrl_report_dropped_percent(report));
 }

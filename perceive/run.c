@@ -196,7 +196,8 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     run->warnings.n = 0;
     grrl_doubt_input(tracks, &run->warnings);
     grrl_doubt_camera(&run->camera, &run->warnings);
-    grrl_doubt_unit(tracks, &run->upright, config->unit_said, &run->warnings);
+    grrl_doubt_unit(tracks, &run->upright, config->unit_said || config->rectify != NULL,
+                    &run->warnings);
     grrl_doubt_losses(&run->upright, &run->warnings);
     grrl_camera_to_picture(&run->camera, model, &run->picture);
     run->report = run->upright;
@@ -207,15 +208,22 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
 enum grrl_run_result grrl_run_tracks(struct grrl_run *run, const struct grrl_run_config *config,
                                      struct grrl_tracks *tracks)
 {
-    struct grrl_scale scale = grrl_unit_scale(config->unit, tracks->in_pixels);
-    bool pixels = strcmp(scale.name, "px") == 0;
+    const struct grrl_rectify *rectify = config->rectify;
+    struct grrl_scale scale = grrl_unit_scale(config->unit, tracks->in_pixels && rectify == NULL);
+    bool pixels = rectify != NULL || strcmp(scale.name, "px") == 0;
     bool camera = config->profile == GRRL_PROFILE_CAMERA ||
                   (config->profile == GRRL_PROFILE_OF_UNIT && pixels);
     if (camera && !pixels)
         return GRRL_RUN_NO_PIXELS;
     struct grrl_perception_config perception;
+    if (rectify != NULL && !grrl_rectify_tracks(rectify, tracks))
+        return GRRL_RUN_OUT_OF_MEMORY;
+    if (tracks->n_points == 0 && tracks->lost.beyond > 0)
+        return GRRL_RUN_BEYOND;
     if (camera)
-        grrl_perception_config_camera(&perception, pixel_m);
+        grrl_perception_config_camera(
+            &perception,
+            rectify != NULL ? (float)rectify->table_per_pixel * scale.metres : pixel_m);
     else
         grrl_perception_config_default(&perception);
     if (config->noise > 0.0f)
@@ -228,7 +236,8 @@ enum grrl_run_result grrl_run_tracks(struct grrl_run *run, const struct grrl_run
     }
     run->camera = (struct grrl_camera){0};
     if (!grrl_tracks_join_renewed(tracks, perception.noise_m) ||
-        (camera && !grrl_camera_undo(tracks, perception.noise_m, &run->camera)) ||
+        (camera && rectify == NULL &&
+         !grrl_camera_undo(tracks, perception.noise_m, &run->camera)) ||
         !grrl_pace_configure(tracks, &perception))
         return GRRL_RUN_OUT_OF_MEMORY;
     enum grrl_run_result result = perceive(run, &perception, tracks);

@@ -5,6 +5,7 @@
 #define GRRL_PERCEIVE_RUN_H
 
 #include "camera.h"
+#include "rectify.h"
 #include "report.h"
 #include "tracks.h"
 #include "warnings.h"
@@ -29,6 +30,10 @@ struct grrl_run_config {
     enum grrl_profile profile; /* OF_UNIT: the camera for pixels */
     float noise;               /* of a point, in that unit; 0: as the profile has it */
     bool noise_from_points;    /* estimate it from all frames */
+
+    /* NULL, or how the pixels of the recording map to the table; unit (m or mm) is then that of the
+     * table, of noise and of the answer. */
+    const struct grrl_rectify *rectify;
 };
 
 enum grrl_run_result {
@@ -38,6 +43,7 @@ enum grrl_run_result {
     GRRL_RUN_NO_NOISE,      /* noise_from_points: they do not scatter, or are rounded */
     GRRL_RUN_BAD_NOISE,     /* noise is out of range */
     GRRL_RUN_TOO_FAR,       /* every point lies too far from the origin */
+    GRRL_RUN_BEYOND,        /* rectify: every point lies beyond the horizon of the table */
     GRRL_RUN_NOTHING_SEEN,  /* no point is visible in any frame */
     GRRL_RUN_OUT_OF_MEMORY,
     GRRL_RUN_FAILED /* status says why */

@@ -26,6 +26,7 @@ struct grrl_tracks_lost {
     size_t empty;  /* positions empty or NaN */
     size_t marked; /* positions that mean "none": (0, 0) or (-1, -1) */
     size_t frozen; /* positions that a tracker repeats after it has lost the point */
+    size_t beyond; /* positions that grrl_rectify_tracks found beyond the horizon of the table */
 };
 
 /* Tracks that grrl_tracks_choose has left out. */

@@ -55,8 +55,8 @@ struct Recording {
     std::vector<TrackTruth> tracks; /* by id */
     int bodies = 0;                 /* including the ground, body 0 */
     std::vector<Joint> joints;
-    std::vector<bool> open;         /* of the joints: no motion tells them from none */
-    double noise = 0.0; /* standard deviation of a point, in the unit */
+    std::vector<bool> open; /* of the joints: no motion tells them from none */
+    double noise = 0.0;     /* standard deviation of a point, in the unit */
 };
 
 /* Four seconds. The object, its motion and the camera depend only on the seed, whatever the tracks.

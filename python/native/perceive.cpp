@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 extern "C" {
 #include "motion.h"
@@ -100,6 +101,7 @@ void fill(Tracks &tracks, const Ids &id, const Floats &x, const Floats &y, const
 struct Run {
     Tracks tracks;
     grrl_run_config config{};
+    grrl_rectify rectify{};
     std::unique_ptr<grrl_run> run = std::make_unique<grrl_run>();
 
     void perceive(bool drop_lost);
@@ -126,6 +128,10 @@ void Run::perceive(bool drop_lost)
     case GRRL_RUN_TOO_FAR:
         throw std::invalid_argument("every point lies more than 100 m from the origin: is unit= "
                                     "right?");
+    case GRRL_RUN_BEYOND:
+        throw std::invalid_argument(
+            "rectify: every point lies beyond the horizon of the table; are "
+            "the four points right?");
     case GRRL_RUN_NOTHING_SEEN:
         throw std::invalid_argument("no point is visible in any frame");
     case GRRL_RUN_OUT_OF_MEMORY:
@@ -233,6 +239,7 @@ nb::dict answer_of(const Run &run, bool with_motion)
     counts["empty"] = all.lost.empty;
     counts["marked"] = all.lost.marked;
     counts["frozen"] = all.lost.frozen;
+    counts["beyond"] = all.lost.beyond;
     counts["tracks"] = report.tracks;
     counts["tracks_left_out"] = all.left_out.n;
     counts["tracks_joined"] = all.n_renewed;
@@ -264,22 +271,39 @@ void run_alone(Run &run, bool drop_lost)
         throw nb::value_error(wrong.c_str());
 }
 
+/* Rows of PX, PY, X, Y; none for no rectification. */
+void set_rectify(Run &run, const std::vector<double> &places)
+{
+    grrl_rectify_point point[GRRL_RECTIFY_POINTS];
+    if (places.empty())
+        return;
+    for (size_t i = 0; i < GRRL_RECTIFY_POINTS; i++)
+        point[i] = {{places.at(4 * i), places.at(4 * i + 1)},
+                    {places.at(4 * i + 2), places.at(4 * i + 3)}};
+    const char *wrong = grrl_rectify_from(point, &run.rectify);
+    if (wrong != nullptr)
+        throw nb::value_error((std::string("rectify must be ") + wrong).c_str());
+    run.config.rectify = &run.rectify;
+}
+
 /* Positions that a reader found empty, marked and frozen. */
 using Lost = std::tuple<size_t, size_t, size_t>;
 
 nb::dict perceive(const Ids &id, const Floats &x, const Floats &y, const Counts &count,
                   const Numbers &number, const Flags &pushing, const Flags &settled,
                   const std::string &unit, const std::string &profile, double noise,
-                  const Lost &lost, bool drop_lost, bool said, bool with_motion)
+                  const Lost &lost, bool drop_lost, bool said, bool with_motion,
+                  const std::vector<double> &rectify)
 {
     Run run;
     fill(run.tracks, id, x, y, count, number, pushing, settled);
-    run.tracks.all.lost = {std::get<0>(lost), std::get<1>(lost), std::get<2>(lost)};
+    run.tracks.all.lost = {std::get<0>(lost), std::get<1>(lost), std::get<2>(lost), 0};
     run.config.unit = unit_of(unit);
     run.config.unit_said = said;
     run.config.profile = profile == "camera" ? GRRL_PROFILE_CAMERA : GRRL_PROFILE_TRACKER;
     run.config.noise = noise == measured ? 0.0f : static_cast<float>(noise);
     run.config.noise_from_points = noise == measured;
+    set_rectify(run, rectify);
     run_alone(run, drop_lost);
     return answer_of(run, with_motion);
 }
@@ -373,7 +397,7 @@ void bind_perceive(nb::module_ &m)
     m.def("perceive", &perceive, nb::arg("ids"), nb::arg("x"), nb::arg("y"), nb::arg("count"),
           nb::arg("number"), nb::arg("pushing"), nb::arg("settled"), nb::arg("unit"),
           nb::arg("profile"), nb::arg("noise"), nb::arg("lost"), nb::arg("drop_lost"),
-          nb::arg("said"), nb::arg("motion"));
+          nb::arg("said"), nb::arg("motion"), nb::arg("rectify"));
     m.def("read_csv", &read_csv, nb::arg("path"));
     nb::class_<Perception>(m, "Perception")
         .def(nb::init<const std::string &, const std::string &, double>(), nb::arg("unit"),

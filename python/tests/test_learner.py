@@ -112,6 +112,11 @@ def test_nothing_to_push():
     assert learner.term == "lb"
 
 
-def test_noise_that_hides_all():
+def test_a_scene_with_nothing_to_push(monkeypatch):
+    def settle(learner, world):
+        learner.observe(np.array([[0.5, 0.5]]))  # one point is no link
+        learner.perceive()
+
+    monkeypatch.setattr(grrl.world, "settle", settle)
     with pytest.raises(RuntimeError, match="nothing to push; less noise"):
-        grrl.run_trial(grrl.Learner("learn", noise=0.1), "RR", noise=0.1)
+        grrl.run_trial(grrl.Learner("learn"), "RR")

@@ -23,7 +23,8 @@ def texts_of(notebook):
 
 @pytest.mark.skipif(not grrl.HAS_WORLD, reason="needs the simulated world")
 def test_notebook(tmp_path):
-    (tmp_path / "arm.mp4").symlink_to(ROOT / "examples" / "arm.mp4")
+    for name in ("arm.mp4", "arm.csv"):
+        (tmp_path / name).symlink_to(ROOT / "examples" / name)
     (tmp_path / "out").mkdir()
     printed = nbformat.read(NOTEBOOK, as_version=4)
     notebook = nbformat.read(NOTEBOOK, as_version=4)
@@ -35,7 +36,7 @@ def test_notebook(tmp_path):
         NotebookClient(notebook, timeout=900, kernel_name="python3",
                        resources={"metadata": {"path": str(tmp_path)}}).execute()
     assert texts_of(notebook) == texts_of(printed)
-    assert "D(lb, R(L(s, f3), R(P(L(s, f1), L(s, f4)), L(s, f2))))" in texts_of(notebook)[1]
+    assert "D(lb, R(R(L(s, f2), P(L(l, f1), L(s, f4))), L(s, f3)))" in texts_of(notebook)[1]
     drawn, shown = (matplotlib.image.imread(path).astype(float)
                     for path in (tmp_path / "out" / PICTURE, ROOT / "docs" / "images" / PICTURE))
     assert drawn.shape == shown.shape and np.abs(drawn - shown).mean() < 3.0  # of 255

@@ -122,6 +122,35 @@ def test_same_answer_for_two_pictures(tmp_path):
     assert model.joints
 
 
+def seen_aside(table):
+    """Pixels of millimetres on a table that is tilted by 40 degrees; y points down."""
+    x, y = np.moveaxis(np.asarray(table, float), -1, 0)
+    far = 900 + math.sin(0.7) * y
+    return np.stack([640 + 1000 * x / far, 360 - 1000 * math.cos(0.7) * y / far], -1)
+
+
+def test_rectified_by_four_points_as_the_program_does(tmp_path):
+    path = tmp_path / "tracks.csv"
+    corners = np.array([[-150, -150], [150, -150], [150, 100], [-150, 100]])
+    places = np.hstack([np.round(seen_aside(corners), 3), corners])
+    write_csv(path, seen_aside(hinge()), "frame,point,x_px,y_px")
+    text = " ".join(f"{a:.3f},{b:.3f}={c:g},{d:g}" for a, b, c, d in places)
+    answer = json.loads(run("PERCEIVE", "--json", "--unit", "mm", "--rectify", text, path))
+    model = grrl.perceive(grrl.io.from_csv(path), "mm", None, rectify=places)
+    assert_same(model, answer)
+    assert model.joints[0].type == "revolute" and np.allclose(model.joints[0].point, (40, -20), atol=2)
+
+
+def test_rectify_is_four_points_of_a_table():
+    places = np.array([[0, 0, 0, 0], [9, 0, 1, 0], [9, 9, 1, 1], [0, 9, 0, 1]])
+    with pytest.raises(ValueError, match="four rows"):
+        grrl.perceive(hinge(), "mm", rectify=places[:3])
+    with pytest.raises(ValueError, match="no three of them on a line"):
+        grrl.perceive(hinge(), "mm", rectify=places * [1, 0, 1, 1])
+    with pytest.raises(ValueError, match="with rectify, of the table"):
+        grrl.perceive(hinge(), "px", rectify=places)
+
+
 def test_tracks_that_go_on_under_other_ids():
     model = grrl.perceive(renewed(), "mm", 0.3)
     assert model.counts["tracks_joined"] > 15 and model.joints[0].type == "revolute"

@@ -100,6 +100,31 @@ awk 'BEGIN { srand(4); print "frame,point,x_px,y_px"
 expect 0 'warning: the camera looks at the plane from [23].* degrees aside: undone' "$WORK/tilted.csv"
 expect 0 '^D(lb, R(L(l, f1), L(l, f2)))$' "$WORK/tilted.csv"
 
+# the same table by four points of it, in mm: pivot at (-100, -60), 1.4 rad; another order is no table
+CORNERS=$(awk 'BEGIN { for (i = 0; i < 4; i++) {
+    x = i % 2 * 1000 - 500; y = int(i / 2) * 640 - 320; s = 2600 / (2600 + 0.5 * y)
+    printf "%.3f,%.3f=%d,%d ", 640 + s * x, 360 + s * 0.866 * y, x, y } }')
+"$PERCEIVE" --rectify "$CORNERS" --unit mm --json "$WORK/tilted.csv" >"$WORK/tilted.json" 2>"$WORK/tilted.err" ||
+    wrong "--rectify: exit status $?"
+[ ! -s "$WORK/tilted.err" ] || wrong "--rectify warns: $(cat "$WORK/tilted.err")"
+if command -v python3 >/dev/null; then
+    python3 -c 'import json, sys
+model = json.load(open(sys.argv[1]))
+joint, = model["joints"]
+assert (model["unit"], model["profile"], joint["type"]) == ("mm", "camera", "revolute")
+assert abs(joint["x"] + 100) < 3 and abs(joint["y"] + 60) < 3, joint
+assert abs(joint["upper"] - joint["lower"] - 80.2) < 1, joint' "$WORK/tilted.json" || wrong "--rectify: the joint"
+fi
+expect 0 'positions are beyond the horizon of the table' \
+    --rectify '140,700=-500,320 1140,700=500,320 440,400=-500,-320 840,400=500,-320' --unit mm "$WORK/tilted.csv"
+expect 1 'every point lies beyond the horizon' \
+    --rectify '140,9700=-500,320 1140,9700=500,320 440,9400=-500,-320 840,9400=500,-320' "$WORK/tilted.csv"
+expect 2 'must be four points, no three of them on a line' --rectify '0,0=0,0 1,1=1,0 2,2=1,1 0,9=0,1' a
+expect 2 'must be four points of one plane seen from one side' --rectify '0,0=0,0 9,0=1,1 9,9=1,0 0,9=0,1' a
+expect 2 'must be four pixels and their positions' --rectify '0,0=0,0 9,0=1,0 9,9=1,1' a
+expect 2 'rectify is for a file of tracks in pixels' --rectify "$CORNERS" --log a
+expect 2 'the unit is that of the table' --rectify "$CORNERS" --unit px a
+
 # how the joints move: 40.1 and 30 in 60 frames
 expect 0 '^D(lb, R(' --motion "$WORK/hinge_motion.csv" "$WORK/hinge.csv"
 expect 0 '^D(lb, P(' --unit mm --motion "$WORK/slide_motion.csv" "$WORK/slide.csv"

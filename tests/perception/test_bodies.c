@@ -233,6 +233,9 @@ static double slow_bend(int body)
     return sum > 0.0 ? sum / n : 0.0;
 }
 
+/* Bodies that lost all their features when another one dissolved. */
+static int emptied;
+
 static void plain_update(void)
 {
     if (copy.n_bodies == 0)
@@ -258,9 +261,12 @@ static void plain_update(void)
     merge(are_one_at_rest);
     give_back();
     take_out_redundant();
-    for (uint8_t b = copy.n_bodies; b-- > 0;)
-        if (count_of(b) == 0)
+    for (uint8_t b = copy.n_bodies; b-- > 0;) {
+        if (count_of(b) == 0) {
             take_out(b);
+            emptied++;
+        }
+    }
     for (uint8_t b = 0; b < copy.n_bodies; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = features_of(b, slots);
@@ -392,6 +398,41 @@ static void misjudge(double reach)
         scene.number[b] = ++scene.n_numbers;
 }
 
+/* Four bodies of an earlier update, on two links, each seen for part of the time only. */
+static void make_pieces(void)
+{
+    enum { PIECES = 4 };
+    uint8_t piece_of[GRRL_MAX_FEATURES];
+    int first[PIECES];
+    int last[PIECES];
+    int n_keyframes = scene_start(scene_int(4, 8));
+    (void)scene_add_body(0);
+    (void)scene_add_body(0);
+    for (uint8_t piece = 0; piece < PIECES; piece++) {
+        uint8_t body = (uint8_t)scene_int(0, 1);
+        double along = scene_uniform(-0.05, 0.05);
+        first[piece] = scene_int(0, 2);
+        last[piece] = scene_int(n_keyframes - 3, n_keyframes - 1);
+        for (int i = scene_int(4, 8); i > 0; i--)
+            piece_of[scene_add_feature(body, along + scene_uniform(-0.02, 0.02),
+                                       scene_uniform(-0.02, 0.02))] = piece;
+    }
+    scene_wander(0, 0.05, 0.1);
+    scene_wander(1, 0.05, 0.1);
+    scene_see(1.8, 0.3);
+    scene.n_bodies = PIECES;
+    scene.n_numbers = 0;
+    for (int b = 0; b < PIECES; b++)
+        scene.number[b] = ++scene.n_numbers;
+    for (int i = 0; i < scene.n_slots; i++) {
+        scene.body_of[i] = piece_of[i];
+        scene.blob_of[i] = 1;
+        for (int k = 0; k < n_keyframes; k++)
+            if (k < first[piece_of[i]] || k > last[piece_of[i]])
+                scene.keyframe[k].weight[i] = 0;
+    }
+}
+
 /* Updates with some of the keyframes, with more and with all. */
 static void check_chain(void)
 {
@@ -440,6 +481,23 @@ static void steps_on_misjudged_chains(void **state)
     assert_true(gone > 30);
 }
 
+/* A body may lose all its features when another one dissolves; it must not be left behind. */
+static void steps_that_empty_a_body(void **state)
+{
+    (void)state;
+    scene_seed("steps_that_empty_a_body");
+    emptied = 0;
+    for (int run = 0; run < 4000; run++) {
+        make_pieces();
+        copy = scene;
+        plain_update(); /* counts */
+        grrl_bodies_update(&scene);
+        assert_publishable();
+    }
+    print_message("%d bodies emptied in 4000 scenes\n", emptied);
+    assert_true(emptied > 0);
+}
+
 static void steps_at_capacity(void **state)
 {
     (void)state;
@@ -482,9 +540,8 @@ static void links_are_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_on_random_chains),
-        cmocka_unit_test(steps_on_misjudged_chains),
-        cmocka_unit_test(steps_at_capacity),
+        cmocka_unit_test(steps_on_random_chains),  cmocka_unit_test(steps_on_misjudged_chains),
+        cmocka_unit_test(steps_that_empty_a_body), cmocka_unit_test(steps_at_capacity),
         cmocka_unit_test(links_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -323,6 +323,16 @@ static bool slow_lies_between(int a, int b, struct point in_a, double far)
     return nearer;
 }
 
+/* Whether a further body is closer to both than `far` in keyframe k. */
+static bool slow_stands_between(int a, int b, int k, double far)
+{
+    bool stands = false;
+    for (int c = 0; c < scene.n_bodies; c++)
+        if (c != a && c != b && scene.pose[k][c].weight > 0.0f)
+            stands = (above(far, slow_gap(a, c, k)) && above(far, slow_gap(b, c, k))) || stands;
+    return stands;
+}
+
 static bool slow_is_near(int a, int b, bool revolute, const struct slow_fit *fit, double support)
 {
     double gap = (double)scene.config.gap_m;
@@ -332,15 +342,19 @@ static bool slow_is_near(int a, int b, bool revolute, const struct slow_fit *fit
         bool near = !above(fmax(da, db), gap);
         bool certain = above(support, 30.0);
         bool reached =
-            !above(da, gap + 2.2 * slow_reach(a)) && !above(db, gap + 2.2 * slow_reach(b));
+            !above(da, gap + 1.5 * slow_reach(a)) && !above(db, gap + 1.5 * slow_reach(b));
         return near || (certain && reached && !slow_lies_between(a, b, fit->in_a, fmax(da, db)));
     }
     bool near = true;
-    gap += above(support, 30.0) ? slow_reach(a) + slow_reach(b) : 0.0;
+    double far = above(support, 30.0) ? slow_reach(a) + slow_reach(b) : 0.0;
+    gap += fit->upper - fit->lower;
     for (int k = 0; k < scene.n_keyframes; k++) {
         bool both = scene.pose[k][a].weight > 0.0f && scene.pose[k][b].weight > 0.0f;
-        if (both && scene.keyframe[k].at_rest)
-            near = !above(slow_gap(a, b, k), gap + fit->upper - fit->lower) && near;
+        if (both && scene.keyframe[k].at_rest) {
+            double d = slow_gap(a, b, k);
+            bool reached = !above(d, gap + far);
+            near = (!above(d, gap) || (reached && !slow_stands_between(a, b, k, d))) && near;
+        }
     }
     return near;
 }

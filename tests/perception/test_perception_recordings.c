@@ -245,6 +245,33 @@ static void a_turn_far_from_the_other(void **state)
     assert_int_equal(model->n_joints, 0);
 }
 
+static void slide_while_one_turns(double t)
+{
+    pose[0] = place(0.0, 0.0, 0.5 * t);
+    pose[1] = then(pose[0], place(0.05, 0.0, 0.6 * t));
+    pose[2] = then(pose[0], place(0.06 * t, 0.0, 0.0));
+}
+
+/* Bodies may seem to slide along each other across the one between: the joint is not theirs. */
+static void a_slide_past_the_body_between(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = table();
+    for (int between = 0; between < 2; between++) {
+        begin(&config, "a_slide_past_the_body_between");
+        add_points(0, 12, -0.14, -0.01, 0.012);
+        add_points(2, 12, 0.12, 0.25, 0.012);
+        if (between == 1)
+            add_points(1, 12, -0.03, 0.05, 0.012);
+        perceive(&(struct recording){200, 0.0006, slide_while_one_turns, NULL, NULL});
+        assert_int_equal(model->n_bodies, 2 + between);
+        int slides = 0;
+        for (int i = 0; i < model->n_joints; i++)
+            slides += model->joint[i].type == GRRL_PRISMATIC ? 1 : 0;
+        assert_int_equal(slides, 1 - between);
+    }
+}
+
 /* Of the link at rest only its ends show: two groups of features that look like two things. */
 static void a_link_at_rest_in_two_groups(void **state)
 {
@@ -395,6 +422,11 @@ static void a_hand_that_leaves_is_not_joined(void **state)
     (void)state;
     struct grrl_perception_config config = pictures();
     begin(&config, "a_hand_that_leaves_is_not_joined");
+    if (GRRL_MAX_KEYFRAMES < 48) {
+        print_message("skipped: few of %d keyframes show how the hand leaves\n",
+                      GRRL_MAX_KEYFRAMES);
+        skip();
+    }
     for (int i = 0; i < 5; i++)
         add_points(0, 6, -0.5, 0.5, 0.3);
     add_points(1, 14, 0.005, 0.2, 0.02);
@@ -437,6 +469,7 @@ int main(void)
         cmocka_unit_test(a_body_outlives_its_features),
         cmocka_unit_test(doors_of_any_size),
         cmocka_unit_test(a_turn_far_from_the_other),
+        cmocka_unit_test(a_slide_past_the_body_between),
         cmocka_unit_test(a_link_at_rest_in_two_groups),
         cmocka_unit_test(a_hinge_before_a_camera_that_zooms),
         cmocka_unit_test(what_comes_nearer_is_one_thing),

@@ -119,21 +119,41 @@ static bool is_pivot_near(const struct grrl_perception *p, const struct grrl_joi
            db < gap + FAR_ON_TABLE * half_b && !lies_between(p, e, da > db ? da : db);
 }
 
-bool grrl_joint_is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
-                        float support)
+/* Whether a third body lies closer to both than they are to each other in keyframe k. */
+static bool stands_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k,
+                           float gap)
 {
-    if (e->type == GRRL_REVOLUTE)
-        return is_pivot_near(p, e, support);
-    float gap = p->config.gap_m;
-    gap += support > CERTAIN ? grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b)
-                             : 0.0f;
-    gap += e->fit.upper - e->fit.lower; /* fully extended, they are that much farther apart */
+    for (uint8_t c = 0; c < p->n_bodies; c++)
+        if (c != a && c != b && p->pose[k][c].weight > 0.0f && gap_between(p, a, c, k) < gap &&
+            gap_between(p, b, c, k) < gap)
+            return true;
+    return false;
+}
+
+/* Bodies that slide along each other lie side by side at rest; as for a pivot, those with few
+ * features may seem farther apart if the motion leaves no doubt and no other body lies between. */
+static bool is_slide_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                          float support)
+{
+    float near = p->config.gap_m;
+    near += e->fit.upper - e->fit.lower; /* fully extended, they are that much farther apart */
+    float far = near;
+    if (support > CERTAIN)
+        far += grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b);
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
-        if (both && p->keyframe[k].at_rest && gap_between(p, e->a, e->b, k) > gap)
+        float gap = both && p->keyframe[k].at_rest ? gap_between(p, e->a, e->b, k) : 0.0f;
+        if (gap > far ||
+            (gap > near && p->config.static_background && stands_between(p, e->a, e->b, k, gap)))
             return false;
     }
     return true;
+}
+
+bool grrl_joint_is_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                        float support)
+{
+    return e->type == GRRL_REVOLUTE ? is_pivot_near(p, e, support) : is_slide_near(p, e, support);
 }
 
 float grrl_joint_place_evidence(const struct grrl_perception *p,

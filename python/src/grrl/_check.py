@@ -102,6 +102,15 @@ def one_of(value: Any, name: str, choices: tuple[str, ...]) -> str:
     return value
 
 
+def places(value: Any, name: str) -> list[float]:
+    """Four rows of four finite numbers, one after the other."""
+    array = numbers(value, name).astype(np.float64)
+    if array.shape != (4, 4) or not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} must be four rows (pixel x, pixel y, table x, table y) of finite "
+                         f"numbers; its shape is {array.shape}")
+    return [float(number) for number in array.ravel()]
+
+
 def unit_and_profile(unit: str, profile: str | None) -> tuple[str, str]:
     """The profile, by default that of the unit; the camera's is for pixels only."""
     unit = one_of(unit, "unit", UNITS)

@@ -40,7 +40,7 @@ def _in_python(warning: str) -> str:
 
 def perceive(tracks: np.ndarray | pandas.DataFrame | Tracks, unit: str | None = None,
              noise: float | str | None = "auto", *, profile: str | None = None,
-             motion: bool = True, drop_lost: bool = True) -> Model:
+             motion: bool = True, drop_lost: bool = True, rectify: Any = None) -> Model:
     """Finds the links and joints of what the points lie on, by how they move.
 
     Parameters
@@ -61,6 +61,10 @@ def perceive(tracks: np.ndarray | pandas.DataFrame | Tracks, unit: str | None = 
     drop_lost : bool
         Whether to take away positions that a tracker goes on writing after it has lost a point:
         (0, 0), (-1, -1), or one repeated exactly.
+    rectify : (4, 4) array of float or int, optional
+        Four points of the table, each a row (pixel x, pixel y, table x, table y): the tracks are then
+        in pixels of a camera that stands still, and `unit` ("mm" or "m") is that of the table, of
+        `noise` and of the answer.
 
     Returns
     -------
@@ -77,7 +81,12 @@ def perceive(tracks: np.ndarray | pandas.DataFrame | Tracks, unit: str | None = 
     unit = unit if said else recording.unit
     if unit is None:
         raise ValueError("unit is needed: 'px', 'mm' or 'm', what the positions are in")
-    unit, profile = _check.unit_and_profile(unit, profile)
+    places = [] if rectify is None else _check.places(rectify, "rectify")
+    if places:
+        unit = _check.one_of(unit, "unit (with rectify, of the table)", ("mm", "m"))
+        profile = _check.one_of(profile or "camera", "profile", _check.PROFILES)
+    else:
+        unit, profile = _check.unit_and_profile(unit, profile)
     lost = recording.lost
     drop_lost = bool(drop_lost) and not recording.cleaned
     raw = _native.perceive(
@@ -85,7 +94,7 @@ def perceive(tracks: np.ndarray | pandas.DataFrame | Tracks, unit: str | None = 
         np.ascontiguousarray(recording.xy[:, 1]), recording.count, recording.frames,
         recording.pushing, recording.settled, unit, profile, _noise(noise),
         (lost.get("empty", 0), lost.get("marked", 0), lost.get("frozen", 0)), drop_lost, said,
-        bool(motion))
+        bool(motion), places)
     warnings = recording.warnings + tuple(_in_python(text) for text in raw["warnings"])
     return model_from(raw, unit, frames=recording.frames, profile=profile, noise=raw["noise"],
                       counts={**raw["counts"]}, warnings=warnings)

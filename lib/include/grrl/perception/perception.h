@@ -119,7 +119,8 @@ struct grrl_pair {
     float p_revolute;
     float p_prismatic;
     float p_disconnected;
-    float turned_rad; /* how far they moved apart so far: min_turn_rad or min_slide_m tell a joint */
+    float
+        turned_rad; /* how far they moved apart so far: min_turn_rad or min_slide_m tell a joint */
     float slid_m;
 };
 
