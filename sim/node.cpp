@@ -48,6 +48,8 @@ Node::Node(lcm_t *lcm, NodeConfig config)
     subscribe(GRRL_CHANNEL_MODEL, receive<&Node::on_model>);
     subscribe(GRRL_CHANNEL_DECISION, receive<&Node::on_decision>);
     subscribe(GRRL_CHANNEL_AGENT_STATUS, receive<&Node::on_agent_status>);
+    if (config_.camera != nullptr)
+        subscribe(GRRL_CHANNEL_POINTS, receive<&Node::on_points>);
     begin_trial();
 }
 
@@ -108,6 +110,9 @@ void Node::on_command(const lcm_recv_buf_t &buffer)
     if (command.plant_session_id == config_.session_id && accept_session(command.session_id))
         execute(command);
 }
+
+/* grrl-track's answers are for the agent; on_message needs them for a log that can be replayed. */
+void Node::on_points(const lcm_recv_buf_t &) {}
 
 void Node::on_agent_status(const lcm_recv_buf_t &buffer)
 {

@@ -97,6 +97,7 @@ private:
     void on_command(const lcm_recv_buf_t &buffer);
     void on_model(const lcm_recv_buf_t &buffer);
     void on_decision(const lcm_recv_buf_t &buffer);
+    void on_points(const lcm_recv_buf_t &buffer);
     void on_agent_status(const lcm_recv_buf_t &buffer);
     bool reject(const grrl_wire_why &why);
     bool accept_session(int64_t session_id);

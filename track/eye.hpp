@@ -27,7 +27,7 @@ struct EyeConfig {
     int max_ids = 184;    /* in a scene: perception remembers 192 */
     int max_sparse = 24;  /* of these, where texture is weak, as on a table */
     float spacing_px = 9.0f;
-    float sparse_spacing_px = 32.0f;
+    float sparse_spacing_px = 48.0f;
     float strong = 0.05f; /* texture below this share of the best is weak */
 };
 

@@ -1,6 +1,7 @@
 #!/bin/bash
 # pixels.sh AGENT SIM TRACK PERCEIVE: a trial in which the agent sees nothing but what grrl-track makes
-# of pictures. It ends, and a second run gives the same pushes, the same points and experiences.
+# of pictures. It ends, and a second run gives the same pushes, the same points and experiences. So does
+# an agent that observes the log.
 . "$(dirname "$0")/../e2e/common.sh"
 TRACK=$3
 
@@ -22,5 +23,8 @@ run first 7731
 run second 7732
 same first.csv second.csv
 same first.store second.store
+start observer timeout 60 "$AGENT" --observe --lcm-url "file://first.lcm?speed=0" --store observed.store
+finish "$LAST" "the observing agent"
+same first.store observed.store
 [ "$(wc -l <first.csv)" = 2 ] || fail "the trial did not end"
 grep -Eq '^1,[1-4],(discovered|capped)$' first.csv || fail "what came of the trial?"

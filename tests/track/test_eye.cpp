@@ -210,6 +210,23 @@ static void a_slow_camera_is_told(void **)
     assert_non_null(std::strstr(text.c_str(), "images per second"));
 }
 
+/* Points on the table must not lie so close together that perception takes a group of them for an
+ * object: it joins points up to some 50 pixels apart where links have one every 10. */
+static void table_points_are_no_object(void **)
+{
+    const uint64_t seed = trial_seed(901, 18); /* had a group of five */
+    EyeBench bench(object_of("RPR"), CameraLook{}, seed);
+    bench.rest();
+    std::vector<cv::Point2f> table;
+    for (const grrl_track::Point &point : bench.points())
+        if (point.visible && !bench.on_link(point.id)) {
+            for (cv::Point2f other : table)
+                assert_true(std::hypot(point.x - other.x, point.y - other.y) > 45.0f);
+            table.emplace_back(point.x, point.y);
+        }
+    assert_true(table.size() > 10);
+}
+
 int main()
 {
     cv::setNumThreads(1);
@@ -219,6 +236,7 @@ int main()
         cmocka_unit_test(what_the_finger_hid_gets_its_id_back),
         cmocka_unit_test(the_same_pictures_give_the_same_points),
         cmocka_unit_test(the_table_gets_few_points),
+        cmocka_unit_test(table_points_are_no_object),
         cmocka_unit_test(an_empty_picture_has_no_points),
         cmocka_unit_test(a_new_scene_has_new_ids),
         cmocka_unit_test(bad_pictures_are_told),

@@ -42,6 +42,7 @@ struct Sum {
     int frames = 0;
     double visible = 0.0;
     std::vector<int> right[EYES]; /* scenes, by push */
+    std::vector<int> both;        /* ideal points and the eye */
 };
 
 class Trial
@@ -178,6 +179,10 @@ void print(const char *object, int scenes, const Sum &sum)
             (void)std::printf(" %d", right);
         (void)std::printf("\n");
     }
+    (void)std::printf("right, %-18s", "ideal and the eye");
+    for (int right : sum.both)
+        (void)std::printf(" %d", right);
+    (void)std::printf("\n");
 }
 
 } // namespace
@@ -201,12 +206,14 @@ int main(int argc, char **argv)
     Sum sum;
     for (std::vector<int> &right : sum.right)
         right.assign(static_cast<size_t>(pushes), 0);
+    sum.both.assign(static_cast<size_t>(pushes), 0);
     for (int s = 0; s < scenes; s++) {
         Trial trial(*object.value, look, seed + static_cast<uint64_t>(s));
         for (int p = 0; p < pushes; p++) {
             trial.push();
             for (Eyes eyes : {IDEAL, UNCOVERED, PIXELS, EXACT})
                 sum.right[eyes][static_cast<size_t>(p)] += trial.right(eyes);
+            sum.both[static_cast<size_t>(p)] += trial.right(IDEAL) && trial.right(PIXELS);
         }
         if (std::getenv("TRACK_SCENES_VERBOSE") != nullptr)
             for (Eyes eyes : {IDEAL, UNCOVERED, PIXELS, EXACT})

@@ -1,0 +1,36 @@
+#!/bin/bash
+# measure.sh ROOT: the table of track/measure from runs made up here, and its messages.
+set -u
+MEASURE=$1/track/measure
+WORK=$(mktemp -d)
+trap 'rm -rf "$WORK"' EXIT
+cd "$WORK" || exit 1
+export LC_ALL=C
+
+fail() {
+    echo "FAILED: $*"
+    exit 1
+}
+
+# refused STATUS PATTERN OPTION..
+refused() {
+    local expected=$1 pattern=$2 status=0
+    shift 2
+    bash "$MEASURE" "$@" >output.txt 2>&1 || status=$?
+    [ "$status" -eq "$expected" ] || fail "$*: ended with $status instead of $expected"
+    grep -q -- "$pattern" output.txt || fail "$*: $(cat output.txt)"
+}
+
+refused 2 '--trials 0: must be a whole number from 1 to 1000' --trials 0
+refused 2 '--policy: unknown option' --policy learn
+refused 2 '--out needs a value' --out
+refused 1 'nowhere/runs: no such folder' --table --out nowhere
+
+# Two seeds from pixels: mean 6, deviation 2.16, half an interval 1.96 x 2.16 / 2; one of four capped.
+mkdir -p out/runs
+head='trial,pushes,outcome'
+printf '%s\n' $head 1,4,discovered 2,5,discovered 3,1,aborted >out/runs/RPR-learn-pixels-1.csv
+printf '%s\n' $head 1,6,discovered 2,9,capped >out/runs/RPR-learn-pixels-2.csv
+printf '%s\n' $head 1,3,discovered 2,5,discovered >out/runs/RPR-learn-ideal-1.csv
+table=$(bash "$MEASURE" --table --out out | tail -n 1)
+[ "$table" = '| RPR | learn | 4 | 6.0 ± 2.1 | 4.0 ± 2.0 | 1.50 | 25.0% | 0.0% |' ] || fail "$table"
