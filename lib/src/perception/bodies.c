@@ -59,13 +59,21 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-/* Merges every pair of bodies for which `are_one` holds. */
-static void merge_where(struct grrl_perception *p,
-                        bool (*are_one)(const struct grrl_perception *, uint8_t, uint8_t))
+/* Two separate blobs at rest may be one link with few visible features. They are if another body
+ * turns relative to both about the same point: two links would have two such points. */
+static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
+           grrl_structure_turn_as_one(p, a, b);
+}
+
+/* Merges every pair of bodies that are one: those that never moved apart or, at rest, two blobs of
+ * one link. */
+static void merge_bodies(struct grrl_perception *p, bool at_rest)
 {
     for (uint8_t a = 0; a + 1 < p->n_bodies; a++) {
         for (uint8_t b = (uint8_t)(a + 1); b < p->n_bodies; b++) {
-            if (!are_one(p, a, b))
+            if (at_rest ? !are_one_link_at_rest(p, a, b) : !grrl_apart_may_merge(p, a, b))
                 continue;
             for (uint16_t i = 0; i < p->n_slots; i++)
                 if (p->body_of[i] == b)
@@ -75,14 +83,6 @@ static void merge_where(struct grrl_perception *p,
             b = a; /* the merged body may now match one checked before */
         }
     }
-}
-
-/* Two separate blobs at rest may be one link with few visible features. They are if another body
- * turns relative to both about the same point: two links would have two such points. */
-static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
-{
-    return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
-           grrl_structure_turn_as_one(p, a, b);
 }
 
 /* Refits only bodies that lost or gained features: the fit of the others would be the same. */
@@ -332,11 +332,11 @@ void grrl_bodies_update(struct grrl_perception *p)
     while (adopt_strays(p)) { /* features that left the background */
     }
     dissolve_small(p);
-    merge_where(p, grrl_apart_may_merge);
+    merge_bodies(p, false);
     cut_all_anew(p);
     reassign(p);
     dissolve_small(p);
-    merge_where(p, are_one_link_at_rest);
+    merge_bodies(p, true);
     give_back_the_table(p);
     dissolve_redundant(p);
     drop_empty(p);
