@@ -15,7 +15,7 @@ from ..io import _events
 from . import wire
 
 REST, PUSHING, SETTLED = 1, 2, 3
-_LOCK_STEP = 1
+_REAL_TIME = 0
 _MOVING, _DONE, _REFUSED = 1, 2, 3
 _PUSH = 1
 # Stages of a push, seen from a frame.
@@ -275,7 +275,7 @@ class Run:
         self._utime = m["utime"]
         if not self.frames:
             return 0.0
-        step = _FRAME_S if m["mode"] == _LOCK_STEP else min(max(since, 0.0), _LONGEST_S)
+        step = _FRAME_S if m["mode"] != _REAL_TIME else min(max(since, 0.0), _LONGEST_S)
         return self.frames[-1].t + (_READING_S if self.frames[-1].stage == COMING else step)
 
     def _refer(self) -> None:

@@ -56,7 +56,7 @@ _FAR_M = 1000.0
 # Smallest and largest value of what selects something, as in lcmtypes/wire.c.
 _RANGES = {
     "points_t": {"session_id": (1, 2**63), "seq": (1, 2**63), "trial_id": (0, 2**31),
-                 "ack_cmd_seq": (0, 2**31), "mode": (0, 1), "phase": (0, 3), "x": (-_FAR_M, _FAR_M),
+                 "ack_cmd_seq": (0, 2**31), "mode": (0, 2), "phase": (0, 3), "x": (-_FAR_M, _FAR_M),
                  "y": (-_FAR_M, _FAR_M)},
     "trial_t": {"session_id": (1, 2**63), "trial_id": (1, 2**31), "phase": (0, 2), "outcome": (0, 3)},
     "model_t": {"session_id": (1, 2**63), "trial_id": (0, 2**31), "cmd_seq": (0, 2**31),
