@@ -89,6 +89,23 @@ def test_members_are_those_of_the_definition(name):
     assert wire.TYPES[name].members == wire.members_of(body)
 
 
+def test_choices_are_those_of_the_programs():
+    """A constant that the programs accept, such as a new mode, is no damage to the viewer."""
+    table = (ROOT / "lcmtypes" / "wire.c").read_text(encoding="utf-8")
+    row = r"ONE\(\w, I8, (\w+), GRRL_(\w+)_T_(\w+), GRRL_\w+_T_(\w+)\)"
+    compared = set()
+    for section in re.split(r"#define \w (?=grrl_)", table)[1:]:
+        name = section.split("\n")[0].removeprefix("grrl_")
+        for member, owner, low, high in re.findall(row, section):
+            if name not in wire.TYPES or member not in wire.TYPES[name].ranges:
+                continue
+            text = (ROOT / "lcmtypes" / f"grrl_{owner.lower()}_t.lcm").read_text(encoding="utf-8")
+            value = {c: int(v) for c, v in re.findall(r"const int8_t (\w+) = (-?\d+)", text)}
+            assert wire.TYPES[name].ranges[member] == (value[low], value[high]), (name, member)
+            compared.add((name, member))
+    assert {("points_t", "mode"), ("points_t", "phase"), ("decision_t", "reason")} <= compared
+
+
 def test_what_is_damaged_is_refused():
     good = model_message(1)
     assert wire.decode("model_t", good)["joint_probability"] == [np.float32(0.75)]
@@ -212,7 +229,7 @@ def add_all(run, log):
 
 
 def test_a_long_live_run_drops_its_beginning(log):
-    whole, short = read_log(log), add_all(Run(most_frames=100), log)
+    whole, short = read_log(log), add_all(Run(max_frames=100), log)
     assert len(short.frames) <= 100 < len(whole.frames) and short.dropped
     assert short.trials == whole.trials
     for a, b in zip(reversed(short.frames), reversed(whole.frames)):

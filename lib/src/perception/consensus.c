@@ -39,7 +39,6 @@
 
 /* Settled groups that are remembered: a split is between few parts. */
 #define SETTLED_MAX 4
-#define SEEN 100u /* outweighs the number of frames averaged, 60 at most */
 
 /* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
@@ -88,25 +87,6 @@ static unsigned seen_in_both(const struct grrl_perception *p, const uint16_t *sl
     return seen;
 }
 
-/* The keyframe that saw most features, averaged over the most frames. */
-static uint8_t fullest_keyframe(const struct grrl_perception *p, const uint16_t *slots, uint16_t n)
-{
-    uint8_t best = 0;
-    unsigned best_seen = 0;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        unsigned seen = 0;
-        for (uint16_t i = 0; i < n; i++) {
-            uint8_t w = p->keyframe[k].weight[slots[i]];
-            seen += w > 0 ? SEEN + w : 0u;
-        }
-        if (seen > best_seen) {
-            best_seen = seen;
-            best = k;
-        }
-    }
-    return best;
-}
-
 /* If tracks are shorter than the motion: the keyframe that shares the most misfit with others. */
 static uint8_t telling_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                                  const float *score)
@@ -145,7 +125,7 @@ static bool tracks_are_short(const struct grrl_perception *p, const uint16_t *sl
 bool grrl_consensus_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                               const float *score, uint8_t *reference)
 {
-    *reference = fullest_keyframe(p, slots, n);
+    *reference = grrl_rigid_reference(p, slots, n);
     if (!tracks_are_short(p, slots, n, *reference))
         return false;
     *reference = telling_reference(p, slots, n, score);

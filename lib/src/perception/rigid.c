@@ -11,7 +11,8 @@
  * wrong instead. */
 #define OFF_SHARE 3
 
-#define SEEN 1000u /* outweighs any number of frames averaged, at most 255 */
+/* A feature more in a keyframe counts as much as this many frames averaged, of all its features. */
+#define SEEN 1000u
 
 /* Standard deviation of growth: a camera may approach or zoom by a third. A body never appears less
  * than half as large as before. */
@@ -102,9 +103,7 @@ float grrl_perception_size_change(const struct grrl_perception *perception, uint
     return most > least ? most - least : 0.0f;
 }
 
-/* The keyframe that saw most of these features; the earliest in case of a tie. */
-static uint8_t reference_keyframe(const struct grrl_perception *p, const uint16_t *slots,
-                                  uint16_t n)
+uint8_t grrl_rigid_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n)
 {
     uint8_t best = 0;
     unsigned best_score = 0;
@@ -164,7 +163,7 @@ struct known {
 static void begin_shape(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                         struct grrl_vec2 *shape, struct known *known)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[reference_keyframe(p, slots, n)];
+    const struct grrl_perception_keyframe *key = &p->keyframe[grrl_rigid_reference(p, slots, n)];
     struct grrl_vec2 mean = {0.0f, 0.0f};
     unsigned seen = 0;
     for (uint16_t i = 0; i < n; i++) {

@@ -17,7 +17,7 @@ from .world import Supervisor, World, carry_out, settle
 _LINKS = _native.MAX_LINKS
 _DIRECTIONS = len(_native.DIRECTIONS_DEG)
 _FAR_M = 20.0
-_MOST_TRIED = 255
+_MAX_TRIED = 255
 
 
 class DiscoverEnv(gymnasium.Env):
@@ -80,7 +80,7 @@ class DiscoverEnv(gymnasium.Env):
             "links": spaces.Box(-_FAR_M, _FAR_M, (_LINKS, 8), np.float32),
             "link_mask": spaces.MultiBinary(_LINKS),
             "joints": spaces.Box(0.0, 1.0, (len(TYPES), _LINKS, _LINKS), np.float32),
-            "tried": spaces.Box(0, _MOST_TRIED, (_LINKS, _DIRECTIONS), np.uint8),
+            "tried": spaces.Box(0, _MAX_TRIED, (_LINKS, _DIRECTIONS), np.uint8),
         }
         if self._points:
             found["points"] = spaces.Box(-_FAR_M, max(_FAR_M, _LINKS), (_native.MAX_FEATURES, 3),
@@ -149,7 +149,7 @@ class DiscoverEnv(gymnasium.Env):
             links[i] = (*body.centroid, *body.frame.ravel(), body.length, body.width)
             mask[i] = 1
             for direction in range(_DIRECTIONS):
-                tried[i, direction] = min(self._tried.get((body.number, direction), 0), _MOST_TRIED)
+                tried[i, direction] = min(self._tried.get((body.number, direction), 0), _MAX_TRIED)
         for joint in model.joints:
             kind = TYPES.index(joint.type)
             joints[kind, [joint.a, joint.b], [joint.b, joint.a]] = joint.probability

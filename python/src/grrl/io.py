@@ -164,8 +164,8 @@ _EVENT = struct.Struct(">4sqqII")
 _POINTS = struct.Struct(">QqqqiiqbbI")
 _CHANNEL = b"GRRL_POINTS"
 _REST, _SETTLED = 1, 3
-_MOST_POINTS = 256
-_MOST_DATA = 1 << 24
+_MAX_POINTS = 256
+_MAX_DATA = 1 << 24
 
 
 _POINTS_MEMBERS = (
@@ -208,7 +208,7 @@ def _events(data: bytes) -> Any:
             begin = at + _EVENT.size
             end = begin + n_channel + n_data
             next_sync = data[end:end + 4]
-            whole = (sync == _SYNC and 0 < n_channel < 1000 and n_data <= _MOST_DATA
+            whole = (sync == _SYNC and 0 < n_channel < 1000 and n_data <= _MAX_DATA
                      and end <= len(data) and next_sync == _SYNC[:len(next_sync)])
         if whole:
             yield data[begin:begin + n_channel], data[begin + n_channel:end], time
@@ -225,7 +225,7 @@ def _points(data: bytes) -> tuple[tuple[int, ...], np.ndarray, np.ndarray] | Non
     if len(data) < _POINTS.size:
         return None
     fingerprint, _, session, seq, trial, _, _, _, phase, n = _POINTS.unpack_from(data)
-    if fingerprint != _FINGERPRINT or n > _MOST_POINTS or len(data) != _POINTS.size + 12 * n:
+    if fingerprint != _FINGERPRINT or n > _MAX_POINTS or len(data) != _POINTS.size + 12 * n:
         return None
     ids = np.frombuffer(data, ">i4", n, _POINTS.size)
     xy = np.frombuffer(data, ">f4", 2 * n, _POINTS.size + 4 * n).reshape(2, n).T

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pandas
 
 _MEASURED = -1.0
-_MOST_NOISE = 1e6
+_MAX_NOISE = 1e6
 
 
 def _noise(noise: float | str | None) -> float:
@@ -25,7 +25,7 @@ def _noise(noise: float | str | None) -> float:
         if noise != "auto":
             raise ValueError(f"noise must be 'auto', a number above 0 or None, not {noise!r}")
         return _MEASURED
-    value = _check.real(noise, "noise", 0.0, _MOST_NOISE)
+    value = _check.real(noise, "noise", 0.0, _MAX_NOISE)
     if value < 1e-9:
         raise ValueError("noise must be above 0: the standard deviation of a point, in the unit of the "
                          "tracks")

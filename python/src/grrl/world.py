@@ -15,7 +15,7 @@ from .model import TYPES, Model
 if _native.HAS_WORLD:
     _native.set_object_folder(os.path.join(os.path.dirname(__file__), "objects"))
 
-_MOST_LOOKS = 10  # at a scene in which the learner finds nothing to push
+_MAX_LOOKS = 10  # at a scene in which the learner finds nothing to push
 
 
 def _need_world() -> None:
@@ -309,7 +309,7 @@ def run_trial(learner: Learner, object: str, trial: int = 1, *, seed: int | None
         decision = learner.choose()
         if decision is None:
             looks += 1
-            if looks > _MOST_LOOKS:
+            if looks > _MAX_LOOKS:
                 raise RuntimeError("the learner finds nothing to push; less noise would help")
             settle(learner, world)
             continue

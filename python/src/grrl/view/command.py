@@ -13,7 +13,7 @@ from typing import Any
 
 from .. import _native
 from . import pack
-from .run import MOST_FRAMES, Run, read_log
+from .run import MAX_FRAMES, Run, read_log
 
 _DESCRIPTION = """\
 Shows a run: the points coloured by the link they are believed to belong to, pivots and axes with
@@ -131,7 +131,7 @@ def _show_live(options: argparse.Namespace) -> None:
 
     server = _aiohttp()
     source = GrowingLog(options.log) if options.log is not None else Bus(options.lcm_url)
-    run = Run(least_gap_us=_LIVE_GAP_US, most_frames=MOST_FRAMES)
+    run = Run(least_gap_us=_LIVE_GAP_US, max_frames=MAX_FRAMES)
     _note(f"following {source.title}")
     _serve(server.live_app(run, source), options)
 

@@ -24,7 +24,7 @@ _FRAME_S = 1 / 30  # of a world that stands still until it is answered
 _LONGEST_S = 0.5
 _READING_S = 0.9  # how long a decision is shown before its push begins
 _SILENT_US = 1_000_000  # then another session may take over
-MOST_FRAMES = 30_000  # that are kept of a live run
+MAX_FRAMES = 30_000  # that are kept of a live run
 
 REASONS = ("at random", "new action", "best bound", "adopted", "by rule")
 SOURCES = ("nothing", "the same structure", "the same structure, properties dropped",
@@ -175,7 +175,7 @@ class Run:
         How often the oldest frames were dropped, and indices changed.
     """
 
-    def __init__(self, least_gap_us: int = 0, most_frames: int | None = None) -> None:
+    def __init__(self, least_gap_us: int = 0, max_frames: int | None = None) -> None:
         self.frames: list[Frame] = []
         self.models: list[ModelSeen] = []
         self.pushes: list[Push] = []
@@ -188,7 +188,7 @@ class Run:
         self.status: dict[str, Any] = {}
         self.stopped = ""
         self.dropped = 0
-        self._gap_us, self._most = least_gap_us, most_frames
+        self._gap_us, self._max = least_gap_us, max_frames
         self._session = self._agent = 0
         self._heard_us: int | None = None
         self._seq = self._utime = 0
@@ -266,7 +266,7 @@ class Run:
         frame = Frame(self._time_of(m), trial, m["id"][order], xy, m["phase"], m["ack_cmd_seq"])
         self.frames.append(frame)
         self._refer()
-        if self._most and len(self.frames) > self._most:
+        if self._max and len(self.frames) > self._max:
             self._forget()
         return True
 

@@ -17,7 +17,7 @@ from .run import Run
 
 _TICK_S = 0.04
 _INFO_S = 1.0
-_MOST_WAITING = 200  # messages; a browser that is slower starts anew
+_MAX_WAITING = 200  # messages; a browser that is slower starts anew
 _HERE = ("127.0.0.1", "localhost", "[::1]")
 _POLICY = ("default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
            "img-src data:; connect-src 'self'")
@@ -77,7 +77,7 @@ class Follower:
 
     def tell(self, message: bytes | str) -> None:
         for waiting in list(self.browsers):
-            if waiting.qsize() > _MOST_WAITING:
+            if waiting.qsize() > _MAX_WAITING:
                 self.browsers.discard(waiting)
                 while not waiting.empty():
                     waiting.get_nowait()

@@ -51,7 +51,7 @@ _MEMBERS = {
 CHANNELS = {f"GRRL_{name[:-2].upper()}": name for name in _MEMBERS}
 
 _CODES = {"int8_t": "i1", "int16_t": "i2", "int32_t": "i4", "int64_t": "i8", "float": "f4"}
-_MOST = {"n_points": 256, "n_links": 32, "n_joints": 64, "n_features": 256}
+_MAX = {"n_points": 256, "n_links": 32, "n_joints": 64, "n_features": 256}
 _FAR_M = 1000.0
 # Smallest and largest value of what selects something, as in lcmtypes/wire.c.
 _RANGES = {
@@ -163,8 +163,8 @@ def decode(name: str, data: bytes) -> dict[str, Any]:
     at = kind.head.size
     for member, dtype, counter in kind.arrays:
         n = message[counter]
-        if not 0 <= n <= _MOST[counter]:
-            raise ValueError(f"{name}: {counter} is {n}, must be 0 to {_MOST[counter]}")
+        if not 0 <= n <= _MAX[counter]:
+            raise ValueError(f"{name}: {counter} is {n}, must be 0 to {_MAX[counter]}")
         if at + n * dtype.itemsize > len(data):
             raise ValueError(f"{name}: ends within {member}, after {len(data)} bytes")
         message[member] = np.frombuffer(data, dtype, n, at).astype(dtype.newbyteorder("="))
