@@ -15,7 +15,7 @@
 
 #include "grrl/base/random.h"
 
-enum { POINTS = 24, MOST_FRAMES = 60 };
+enum { POINTS = 24, MAX_FRAMES = 60 };
 
 /* Half of the points rest, half move along x by `step` a frame; every point has a new id after
  * `life` frames, at a time of its own, and is `gap` frames late with it. */
@@ -73,7 +73,7 @@ static void a_slow_recording_changes_nothing(void **state)
     struct grrl_perception_config before;
     grrl_perception_config_default(&before);
     struct grrl_perception_config after =
-        configured((struct plan){MOST_FRAMES, 0.002f, 0.001f, 1000, 0});
+        configured((struct plan){MAX_FRAMES, 0.002f, 0.001f, 1000, 0});
     assert_memory_equal(&before, &after, sizeof before);
 }
 
@@ -91,7 +91,7 @@ static void short_tracks_need_short_windows(void **state)
 {
     (void)state;
     struct grrl_perception_config config =
-        configured((struct plan){MOST_FRAMES, 0.002f, 0.001f, 8, 0});
+        configured((struct plan){MAX_FRAMES, 0.002f, 0.001f, 8, 0});
     assert_int_equal(config.push_frames, 1);
     assert_true(config.jump_m == 0.015f);
 }
@@ -109,7 +109,7 @@ static void renewed_ids_become_one_track(void **state)
 {
     (void)state;
     for (unsigned gap = 0; gap < 3; gap++) {
-        struct grrl_tracks tracks = make((struct plan){MOST_FRAMES, 0.002f, 0.001f, 15, gap});
+        struct grrl_tracks tracks = make((struct plan){MAX_FRAMES, 0.002f, 0.001f, 15, gap});
         size_t before = grrl_tracks_count_ids(&tracks);
         assert_true(before > 4 * POINTS);
         assert_true(grrl_tracks_join_renewed(&tracks, 0.0007f));
@@ -123,8 +123,8 @@ static void renewed_ids_become_one_track(void **state)
 static void other_tracks_stay(void **state)
 {
     (void)state;
-    const struct plan plans[] = {{MOST_FRAMES, 0.002f, 0.001f, 15, 5},
-                                 {MOST_FRAMES, 0.002f, 0.001f, 1000, 0},
+    const struct plan plans[] = {{MAX_FRAMES, 0.002f, 0.001f, 15, 5},
+                                 {MAX_FRAMES, 0.002f, 0.001f, 1000, 0},
                                  {1, 0.002f, 0.001f, 1000, 0}};
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
         struct grrl_tracks tracks = make(plans[i]);

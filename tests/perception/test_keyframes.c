@@ -374,13 +374,13 @@ static void assert_same(void)
 /* --- a stream of points
  * ---------------------------------------------------------------------------- */
 
-enum { MOST_IDS = GRRL_MAX_FEATURES + 40, MOST_POINTS = MOST_IDS + 4 };
+enum { MAX_IDS = GRRL_MAX_FEATURES + 40, MAX_POINTS = MAX_IDS + 4 };
 
 static struct {
     int n;
-    int32_t id[MOST_IDS];
-    struct point place[MOST_IDS];
-    bool moves[MOST_IDS];
+    int32_t id[MAX_IDS];
+    struct point place[MAX_IDS];
+    bool moves[MAX_IDS];
     double missing;
     double outliers;
     double wrong;
@@ -388,9 +388,9 @@ static struct {
     int first;
 } stream;
 
-static int32_t frame_id[MOST_POINTS];
-static float frame_x[MOST_POINTS];
-static float frame_y[MOST_POINTS];
+static int32_t frame_id[MAX_POINTS];
+static float frame_x[MAX_POINTS];
+static float frame_y[MAX_POINTS];
 
 static void start_stream(int n, double missing, double outliers)
 {
@@ -431,7 +431,7 @@ static struct grrl_frame next_frame(double speed)
             frame_id[n] = stream.id[i];
             frame_x[n] = frame_x[n - 1];
             frame_y[n] = frame_y[n - 1] + (float)scene_uniform(0.0, 0.001);
-            n += n + 1 < MOST_POINTS;
+            n += n + 1 < MAX_POINTS;
         }
     }
     if (n > 0 && scene_chance(stream.wrong)) {
@@ -505,21 +505,21 @@ static void tracks_at_capacity(void **state)
 {
     (void)state;
     scene_seed("tracks_at_capacity");
-    start_stream(MOST_IDS, 0.0, 0.001);
+    start_stream(MAX_IDS, 0.0, 0.001);
     stream.wrong = 0.0;
     show(3, 0.0, false);
     assert_true(scene.counts.overflow >= 3 * 40);
     assert_int_equal(scene.counts.features_high, GRRL_MAX_FEATURES);
-    stream.shown = MOST_IDS / 2;
+    stream.shown = MAX_IDS / 2;
     uint32_t overflow = 0;
     for (int i = 0; i < 5; i++) {
-        stream.first = scene_int(0, MOST_IDS - 1);
+        stream.first = scene_int(0, MAX_IDS - 1);
         run_stream(12);
         overflow = scene.counts.overflow;
     }
     assert_true(overflow > 3 * 40);
     /* ids that no keyframe remembers make room */
-    start_stream(MOST_IDS, 0.0, 0.0);
+    start_stream(MAX_IDS, 0.0, 0.0);
     stream.wrong = 0.0;
     stream.shown = GRRL_MAX_FEATURES;
     show(1, 0.0, true); /* in no keyframe */
@@ -529,7 +529,7 @@ static void tracks_at_capacity(void **state)
     show(1, 0.0, false);
     assert_int_equal(scene.counts.overflow, 40);
     /* but for those that one does */
-    start_stream(MOST_IDS, 0.0, 0.0);
+    start_stream(MAX_IDS, 0.0, 0.0);
     stream.wrong = 0.0;
     stream.shown = 5;
     show(5, 0.0, false);
@@ -540,7 +540,7 @@ static void tracks_at_capacity(void **state)
     assert_int_equal(scene.n_keyframes, 1);
     assert_int_equal(scene.counts.overflow, 40 + 3 * 5);
     /* one frame of a rest is enough to be remembered by */
-    start_stream(MOST_IDS, 0.0, 0.0);
+    start_stream(MAX_IDS, 0.0, 0.0);
     stream.wrong = 0.0;
     stream.shown = GRRL_MAX_FEATURES;
     show(1, 0.0, false);
