@@ -42,13 +42,6 @@ void add(const Outcome &outcome, Kind kind, bool fixed, Figures &f)
                 f.calibration[i] += {called.right, 1};
 }
 
-/* The camera is at its usual level, at rest and straight above. */
-bool is_fixed(const std::string &conditions)
-{
-    return conditions.find("camera=") == std::string::npos ||
-           conditions.find("camera=fixed") != std::string::npos;
-}
-
 std::string cell(const Share &share)
 {
     char text[16] = "-";
@@ -157,7 +150,8 @@ Figures figures(const std::vector<Result> &results, Method method, const std::st
         bool wanted = (conditions.empty() || conditions == result.cell->conditions) &&
                       (object.empty() || object == result.cell->object->name);
         if (wanted)
-            add(result.of[method], result.cell->object->kind, is_fixed(result.cell->conditions), f);
+            add(result.of[method], result.cell->object->kind,
+                result.cell->what.camera == Camera::FIXED, f);
     }
     return f;
 }
