@@ -178,6 +178,7 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     const struct grrl_perception *perception = &run->perception;
     const struct grrl_model *model = grrl_perception_model(perception);
     double per_metre = 1.0 / (double)scale.metres;
+    float noise_m;
     run->status = print_term(run, model);
     if (run->status != GRRL_OK)
         return GRRL_RUN_FAILED;
@@ -202,6 +203,10 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     grrl_doubt_camera(&run->camera, &run->warnings);
     grrl_doubt_unit(tracks, &run->upright, config->unit_said || config->rectify != NULL,
                     &run->warnings);
+    bool slow = perception->config.push_frames != 1; /* else motion scatters, too */
+    if (slow && config->noise == 0.0f && !config->noise_from_points &&
+        measure_noise(&run->noise, tracks, &noise_m) == GRRL_OK)
+        grrl_doubt_noise(&run->upright, (double)noise_m, &run->warnings);
     grrl_doubt_losses(&run->upright, &run->warnings);
     grrl_camera_to_picture(&run->camera, model, &run->picture);
     run->report = run->upright;
