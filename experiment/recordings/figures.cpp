@@ -130,7 +130,8 @@ Interval Share::interval() const
     double centre = p + z * z / (2.0 * n);
     double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
     double scale = 100.0 / (1.0 + z * z / n);
-    return {scale * (centre - half), scale * (centre + half)};
+    return {std::max(0.0, scale * (centre - half)),
+            std::min(100.0, scale * (centre + half))}; /* rounding */
 }
 
 std::vector<std::string> conditions_of(const std::vector<Result> &results)
