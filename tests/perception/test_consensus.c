@@ -136,6 +136,7 @@ static void slow_choose(void)
     }
 }
 
+/* The keyframe that saw most features, and of these the one that saw them in more frames. */
 static int slow_reference(void)
 {
     int best = 0;
@@ -144,7 +145,7 @@ static int slow_reference(void)
         int sum = 0;
         for (int i = 0; i < n_slots; i++)
             if (scene.keyframe[k].weight[slots[i]] > 0)
-                sum += 100 + scene.keyframe[k].weight[slots[i]];
+                sum += 1000 + scene.keyframe[k].weight[slots[i]];
         if (sum > best_score) {
             best = k;
             best_score = sum;
