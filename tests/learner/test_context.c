@@ -154,13 +154,12 @@ static void a_key_holds_a_whole_context(void **state)
         for (unsigned value = 0; value <= grrl_context_max[i]; value++) {
             struct grrl_context a = {{0}};
             struct grrl_context b = {{0}};
-            struct grrl_context back;
             for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
                 a.part[part] = b.part[part] = (uint8_t)(part % (grrl_context_max[part] + 1u));
             b.part[i] = (uint8_t)value;
             uint32_t key = grrl_context_key(&b);
-            grrl_context_of_key(key, &back);
-            assert_memory_equal(&back, &b, sizeof b);
+            for (unsigned part = 0; part < GRRL_CONTEXT_PARTS; part++)
+                assert_int_equal(grrl_context_part(key, part), b.part[part]);
             unsigned differ = a.part[i] != b.part[i];
             uint32_t all = grrl_context_key_bits((1u << GRRL_CONTEXT_PARTS) - 1u);
             uint32_t other = all & ~grrl_context_key_bits((uint16_t)(1u << i));

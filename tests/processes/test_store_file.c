@@ -92,7 +92,7 @@ static void learn(struct memory *memory, int from, int to)
         for (int part = 0; part < GRRL_CONTEXT_PARTS; part++)
             context.part[part] = (uint8_t)grrl_random_below(&random, grrl_context_max[part] + 1u);
         struct grrl_learn_policy *policy = &memory->policy.learn;
-        (void)grrl_cases_learn(&policy->cases, &policy->config, &context, 1.0f);
+        (void)grrl_cases_learn(&policy->cases, &policy->config, grrl_context_key(&context), 1.0f);
     }
 }
 

@@ -64,10 +64,9 @@ uint32_t grrl_context_key(const struct grrl_context *context)
     return key;
 }
 
-void grrl_context_of_key(uint32_t key, struct grrl_context *context)
+uint8_t grrl_context_part(uint32_t key, enum grrl_context_part part)
 {
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        context->part[i] = (uint8_t)(key >> key_shift[i] & part_mask(i));
+    return (uint8_t)(key >> key_shift[part] & part_mask(part));
 }
 
 uint32_t grrl_context_key_bits(uint16_t parts)

@@ -80,9 +80,7 @@ static bool is_known(const struct grrl_estimate *estimate)
 
 static unsigned times_tried(uint32_t key)
 {
-    struct grrl_context context;
-    grrl_context_of_key(key, &context);
-    return context.part[GRRL_CONTEXT_TRIED];
+    return grrl_context_part(key, GRRL_CONTEXT_TRIED);
 }
 
 /* Whether pushes already made may be chosen: where the configuration says so, or none is left. */
@@ -106,12 +104,11 @@ static unsigned estimate_link(const struct grrl_learn_policy *policy, uint8_t li
         uint8_t same = 0;
         while (keys[same] != keys[direction])
             same++;
-        struct grrl_context context;
-        grrl_context_of_key(keys[direction], &context);
         if (same < direction)
             estimates[direction] = estimates[same];
         else
-            grrl_cases_estimate(&policy->cases, &policy->config, &context, &estimates[direction]);
+            grrl_cases_estimate(&policy->cases, &policy->config, keys[direction],
+                                &estimates[direction]);
         met += is_known(&estimates[direction]);
     }
     return met;
@@ -169,9 +166,9 @@ void grrl_learn_learn(void *self, const struct grrl_outcome *outcome, struct grr
     struct grrl_learn_policy *policy = self;
     const struct grrl_choice *choice = &outcome->choice;
     grrl_attempts_add(&policy->attempts, outcome->body_number, choice->direction);
-    struct grrl_context context;
-    grrl_context_of_key(policy->contexts.action[choice->link][choice->direction], &context);
-    update->index = grrl_cases_learn(&policy->cases, &policy->config, &context, outcome->reward);
+    update->index =
+        grrl_cases_learn(&policy->cases, &policy->config,
+                         policy->contexts.action[choice->link][choice->direction], outcome->reward);
 }
 
 struct grrl_usage grrl_learn_usage(const void *self)

@@ -107,14 +107,14 @@ void grrl_cases_clear(struct grrl_case_base *base);
  * effect. */
 void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config);
 
-/* Cost: linear in cases, about 50 instructions each. */
+/* The estimate for the context with this key. Cost: linear in cases, about 50 instructions each. */
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
-                         const struct grrl_context *context, struct grrl_estimate *estimate);
+                         uint32_t key, struct grrl_estimate *estimate);
 
-/* Adds a reward, finite and within +-GRRL_MAX_REWARD. Returns the index of its case, which may be
- * the slot of an evicted one, or GRRL_NO_CASE with capacity 0. */
+/* Adds a reward, finite and within +-GRRL_MAX_REWARD, in the context with this key. Returns the
+ * index of its case, which may be the slot of an evicted one, or GRRL_NO_CASE with capacity 0. */
 uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
-                          const struct grrl_context *context, float reward);
+                          uint32_t key, float reward);
 
 #define GRRL_MAX_REWARD 1.0e6f
 

@@ -42,8 +42,8 @@ extern const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS];
 /* A context in one number, 2 or 3 bits a part; equal contexts have equal keys. */
 uint32_t grrl_context_key(const struct grrl_context *context);
 
-/* The context with this key. */
-void grrl_context_of_key(uint32_t key, struct grrl_context *context);
+/* One part of the context with this key. */
+uint8_t grrl_context_part(uint32_t key, enum grrl_context_part part);
 
 /* The bits of a key that hold the parts of this set (bit i: part i). */
 uint32_t grrl_context_key_bits(uint16_t parts);
