@@ -21,6 +21,7 @@ struct fixture {
 };
 
 static struct fixture one, two;
+static bool stiff; /* the chains of run_trial */
 
 static void init_with(struct fixture *fixture, const struct grrl_policy_type *type,
                       uint32_t capacity, uint64_t seed)
@@ -43,6 +44,7 @@ static int set_up(void **state)
 {
     (void)state;
     init(&one, &grrl_policy_learn, SEED);
+    stiff = false;
     world_start("RPR");
     return 0;
 }
@@ -53,6 +55,7 @@ static unsigned run_trial(struct fixture *fixture, const char *joints, uint32_t 
 {
     struct grrl_learner *learner = &fixture->learner;
     world_start(joints);
+    world.stiff = stiff;
     grrl_learner_begin_trial(learner, trial);
     assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
     float sum = 0.0f;

@@ -127,6 +127,8 @@ static const struct {
     [GRRL_CONTEXT_LONGER] = {"longer links", {"0", "1", "2+"}},
     [GRRL_CONTEXT_ASPECT] = {"shape", {"slender", "stout", "round"}},
     [GRRL_CONTEXT_SKEW] = {"thins out", {"neither way", "behind", "ahead"}},
+    [GRRL_CONTEXT_ELSEWHERE] = {"known elsewhere",
+                                {"nothing", "revolute", "prismatic", "both types"}},
 };
 
 /* Prints the values of a part, such as one|other; whether the part says anything at all. */

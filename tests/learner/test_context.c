@@ -94,6 +94,26 @@ static void a_context_says_what_is_around_the_link(void **state)
     assert_int_equal(grrl_context_of(&attempts, &model, LARGE_M, 3, contexts), GRRL_ERR_ARGUMENT);
 }
 
+/* What another link has shown counts, wherever it is: even on another object. */
+static void joints_elsewhere_count(void **state)
+{
+    (void)state;
+    struct grrl_model model = chain(1.0f, 0.0f, 1.0f);
+    struct grrl_context contexts[GRRL_DIRECTIONS];
+    grrl_attempts_update(&attempts, &model, LARGE_M);
+    static const uint8_t elsewhere[] = {2, 0, 1};
+    for (uint8_t body = 0; body < 3; body++) {
+        describe(&model, body, contexts);
+        for (int d = 0; d < GRRL_DIRECTIONS; d++)
+            assert_int_equal(contexts[d].part[GRRL_CONTEXT_ELSEWHERE], elsewhere[body]);
+    }
+    model.body[3] = model.body[2];
+    model.body[3].number = 4;
+    model.n_bodies = 4;
+    describe(&model, 3, contexts);
+    assert_int_equal(contexts[0].part[GRRL_CONTEXT_ELSEWHERE], 3);
+}
+
 static void an_object_may_be_turned_and_mirrored(void **state)
 {
     (void)state;
@@ -207,6 +227,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_context_says_what_is_around_the_link, set_up),
+        cmocka_unit_test_setup(joints_elsewhere_count, set_up),
         cmocka_unit_test_setup(an_object_may_be_turned_and_mirrored, set_up),
         cmocka_unit_test_setup(a_key_holds_a_whole_context, set_up),
         cmocka_unit_test_setup(the_shape_of_an_unmoved_body_counts, set_up),

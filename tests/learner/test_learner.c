@@ -54,6 +54,56 @@ static void experience_of_one_object_helps_with_another(void **state)
     }
 }
 
+static void start(struct grrl_learner *learner)
+{
+    grrl_learner_begin_trial(learner, 1);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+}
+
+static struct grrl_update adopt(struct grrl_learner *learner, uint16_t number, uint8_t direction,
+                                bool ended)
+{
+    struct grrl_decision decision;
+    struct grrl_update update;
+    assert_int_equal(grrl_learner_adopt(learner, number, direction, false, &decision), GRRL_OK);
+    (void)world_push(&decision.choice);
+    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
+    assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
+    return update;
+}
+
+/* On a stiff chain the second push across pays. Trying all others first would take 70 pushes. */
+static void a_push_is_repeated_where_that_pays(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    uint32_t hash = 0;
+    stiff = true;
+    for (uint64_t seed = SEED; seed < SEED + 5; seed++) {
+        init(&one, &grrl_policy_learn, seed);
+        (void)run_trials(&one, "R", 1, 30, &hash);
+        unsigned pushes = run_trials(&one, "R", 31, 10, &hash);
+        print_message("%u pushes in 10 trials\n", pushes);
+        assert_true(pushes < 50);
+    }
+}
+
+/* Known just as little, a new push comes before one that was in vain. */
+static void a_push_made_in_vain_is_not_the_next_one(void **state)
+{
+    (void)state;
+    print_message("seed %llu\n", (unsigned long long)SEED);
+    for (uint64_t seed = SEED; seed < SEED + 20; seed++) {
+        struct grrl_decision decision;
+        init(&one, &grrl_policy_learn, seed);
+        world_start("R");
+        start(&one.learner);
+        (void)adopt(&one.learner, 1, 0, false);
+        assert_int_equal(grrl_learner_choose(&one.learner, &decision), GRRL_OK);
+        assert_int_not_equal(decision.choice.direction, 0);
+    }
+}
+
 static void the_same_outcomes_give_the_same_choices(void **state)
 {
     (void)state;
@@ -91,24 +141,6 @@ static void nothing_but_experience_outlives_a_trial(void **state)
     (void)run_trial(&one, "RPRR", 9, &a);
     (void)run_trial(&two, "RPRR", 9, &b);
     assert_int_equal(a, b);
-}
-
-static void start(struct grrl_learner *learner)
-{
-    grrl_learner_begin_trial(learner, 1);
-    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-}
-
-static struct grrl_update adopt(struct grrl_learner *learner, uint16_t number, uint8_t direction,
-                                bool ended)
-{
-    struct grrl_decision decision;
-    struct grrl_update update;
-    assert_int_equal(grrl_learner_adopt(learner, number, direction, false, &decision), GRRL_OK);
-    (void)world_push(&decision.choice);
-    assert_int_equal(grrl_learner_perceive(learner), GRRL_OK);
-    assert_int_equal(grrl_learner_learn(learner, ended, &update), GRRL_OK);
-    return update;
 }
 
 static void a_discovery_is_paid_once(void **state)
@@ -409,6 +441,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(learning_needs_fewer_pushes_than_chance, set_up),
         cmocka_unit_test_setup(experience_of_one_object_helps_with_another, set_up),
+        cmocka_unit_test_setup(a_push_is_repeated_where_that_pays, set_up),
+        cmocka_unit_test_setup(a_push_made_in_vain_is_not_the_next_one, set_up),
         cmocka_unit_test_setup(the_same_outcomes_give_the_same_choices, set_up),
         cmocka_unit_test_setup(nothing_but_experience_outlives_a_trial, set_up),
         cmocka_unit_test_setup(a_discovery_is_paid_once, set_up),

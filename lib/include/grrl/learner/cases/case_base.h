@@ -45,7 +45,6 @@ struct grrl_case_config {
     float confidence; /* initial and highest log odds that the object is as known, >= 0; 0.5 */
     float present;    /* extra weight of a reward from the running trial, >= 0; 3 */
     uint8_t memory;   /* rewards a case remembers, old or new, >= 1; 5 */
-    uint8_t repeats;  /* 0: no push again while its link stays the same and others are left */
     uint16_t parts;   /* bit i: part i of a context counts; default all */
 };
 
