@@ -360,6 +360,26 @@ static void merged_rewards_are_pooled(void **state)
     assert_true(fabsf(f.base.cases[0].value_all - 1.5f) < 1e-6f);
 }
 
+static void the_best_founded_cases_outlive_a_merge(void **state)
+{
+    (void)state;
+    static struct grrl_case cases[CAPACITY];
+    struct grrl_case_base other;
+    struct grrl_context often = context(0, 0);
+    struct grrl_context once = context(2, 0);
+    grrl_cases_init(&other, cases, CAPACITY);
+    for (int i = 0; i < 3; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&often), 2.0f);
+    for (int i = 0; i < 9; i++) { /* met later, each push in a context of its own */
+        once.part[GRRL_CONTEXT_NEIGHBOUR_LENGTH] = (uint8_t)(i % 5);
+        once.part[GRRL_CONTEXT_ASPECT] = (uint8_t)(i / 5);
+        (void)grrl_cases_learn(&other, &f.config, grrl_context_key(&once), 0.0f);
+    }
+    assert_int_equal(grrl_cases_merge(&f.base, &other, &f.config, 2), GRRL_OK);
+    assert_int_equal(f.base.n, 2);
+    assert_int_equal(f.base.cases[0].n_all + f.base.cases[1].n_all, 4);
+}
+
 static void the_case_not_met_for_the_longest_time_makes_room(void **state)
 {
     (void)state;
@@ -510,6 +530,7 @@ int main(void)
         cmocka_unit_test_setup(counts_of_a_full_case_are_halved, set_up),
         cmocka_unit_test_setup(two_lives_merge_in_either_order, set_up),
         cmocka_unit_test_setup(merged_rewards_are_pooled, set_up),
+        cmocka_unit_test_setup(the_best_founded_cases_outlive_a_merge, set_up),
         cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
         cmocka_unit_test_setup(cases_come_back_from_a_file, set_up),
