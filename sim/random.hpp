@@ -34,15 +34,16 @@ public:
         return static_cast<int>(grrl_random_below(&state_, static_cast<uint32_t>(count)));
     }
 
-    /* Mean 0, variance 1: a sum of twelve uniforms. Unlike Box-Muller it is the same on every
-     * machine. Summed as integers of 2^-24, as uniform() draws them: exact, so the order does not
-     * matter. */
+    /* Mean 0, variance 1: a sum of twelve uniforms, two from each number drawn. Unlike Box-Muller
+     * it is the same on every machine: summed as integers, so it is exact. */
     double normal()
     {
         uint32_t sum = 0;
-        for (int i = 0; i < 12; i++)
-            sum += grrl_random_next(&state_) >> 8;
-        return static_cast<double>(sum) * (1.0 / 16777216.0) - 6.0;
+        for (int i = 0; i < 6; i++) {
+            uint32_t two = grrl_random_next(&state_);
+            sum += (two >> 16) + (two & 0xffffu);
+        }
+        return (static_cast<double>(sum) - 6.0 * 65535.0) / 65536.0;
     }
 
     template <typename T> void shuffle(std::vector<T> &items)

@@ -48,7 +48,8 @@ std::vector<Frame> look(World &world)
     return frames;
 }
 
-/* A hinge pushed at the ends of its links, without noise: two bodies and a pivot. */
+/* A hinge pushed at the outer ends of its links, so that it folds, and seen without noise: two
+ * bodies and a pivot. */
 void test_hinge(void **)
 {
     grrl_sim::WorldParams params;
@@ -62,7 +63,7 @@ void test_hinge(void **)
     assert_true(verdict.missed_joint && !verdict.wrong_joint && !verdict.exact);
     for (int i = 0; i < 12; i++) {
         grrl_sim::Pose link = world.true_poses()[static_cast<size_t>(i % 2)];
-        double end = i / 2 % 2 == 0 ? -0.05 : 0.05;
+        double end = i % 2 == 0 ? 0.05 : -0.05;
         grrl_sim::PushCommand command;
         command.start_m = transform(link, Vec2{end, 0.08});
         command.end_m = transform(link, Vec2{end, -0.08});

@@ -136,6 +136,7 @@ static void slow_choose(void)
     }
 }
 
+/* The keyframe that saw most features, and of these the one that saw them in more frames. */
 static int slow_reference(void)
 {
     int best = 0;
@@ -144,7 +145,7 @@ static int slow_reference(void)
         int sum = 0;
         for (int i = 0; i < n_slots; i++)
             if (scene.keyframe[k].weight[slots[i]] > 0)
-                sum += 100 + scene.keyframe[k].weight[slots[i]];
+                sum += 1000 + scene.keyframe[k].weight[slots[i]];
         if (sum > best_score) {
             best = k;
             best_score = sum;
@@ -246,8 +247,10 @@ static int size_of(const bool *group)
     return n;
 }
 
+/* A group that grows no more explains its features: no further search starts from them. */
 static int slow_find(bool *largest)
 {
+    bool explained[GRRL_MAX_FEATURES] = {false};
     int best = 0;
     int k0 = slow_reference();
     int step = 1;
@@ -258,18 +261,22 @@ static int slow_find(bool *largest)
     for (int s = 0; s < n_slots; s += step) {
         bool group[GRRL_MAX_FEATURES];
         bool grown[GRRL_MAX_FEATURES] = {false};
-        if (scene.keyframe[k0].weight[slots[s]] == 0)
+        bool settled = false;
+        if (scene.keyframe[k0].weight[slots[s]] == 0 || explained[slots[s]])
             continue;
         slow_seed(slots[s], k0, group);
         int before = size_of(group);
-        for (int round = 0; round < 3 && size_of(group) >= 3; round++) {
+        for (int round = 0; round < 3 && size_of(group) >= 3 && !settled; round++) {
             before = size_of(group);
             for (int i = 0; i < n_slots; i++) {
                 double cost = slow_cost(group, slots[i], k0);
                 grown[slots[i]] = cost >= 0.0 && cost <= 3.5 && is_told(group, k0);
             }
+            settled = memcmp(group, grown, sizeof group) == 0;
             memcpy(group, grown, sizeof group);
         }
+        for (int i = 0; i < GRRL_MAX_FEATURES; i++)
+            explained[i] |= settled && group[i];
         int stable = size_of(group) < before ? size_of(group) : before;
         if (stable > best) {
             best = stable;

@@ -176,18 +176,15 @@ static void slow_fit(const uint16_t *slots, int n, struct point *shape, struct s
     for (int k = 0; k < scene.n_keyframes; k++)
         poses[k] = slow_fit_pose(k, known, n_known, shape);
     n_known = slow_spread(slots, n, known, n_known, shape, poses);
-    for (int round = 0; round < 2; round++) {
-        for (int i = 0; i < n_known; i++)
-            (void)slow_place(known[i], poses, &shape[known[i]]);
-        for (int i = 0; i < n_known && round == 0; i++) {
-            mean.x += shape[known[i]].x / n_known;
-            mean.y += shape[known[i]].y / n_known;
-        }
-        for (int i = 0; i < n_known && round == 0; i++)
-            shape[known[i]] = minus(shape[known[i]], mean);
-        for (int k = 0; k < scene.n_keyframes; k++)
-            poses[k] = slow_fit_pose(k, known, n_known, shape);
+    for (int i = 0; i < n_known; i++) {
+        (void)slow_place(known[i], poses, &shape[known[i]]);
+        mean.x += shape[known[i]].x / n_known;
+        mean.y += shape[known[i]].y / n_known;
     }
+    for (int i = 0; i < n_known; i++)
+        shape[known[i]] = minus(shape[known[i]], mean);
+    for (int k = 0; k < scene.n_keyframes; k++)
+        poses[k] = slow_fit_pose(k, known, n_known, shape);
 }
 
 static void assert_same_poses(const struct grrl_perception_pose *poses, int stride,

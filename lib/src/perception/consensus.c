@@ -37,9 +37,6 @@
 
 #define GROW_ROUNDS 3 /* a group grows along a link, then settles */
 
-/* Settled groups that are remembered: a split is between few parts. */
-#define SETTLED_MAX 4
-
 /* Largest misfit of a body over its keyframes, in standard deviations; score[k] for each. */
 float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                             uint8_t body, float *score)
@@ -287,34 +284,20 @@ static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slot
     return n_group;
 }
 
-/* Groups that grow no more: to another seed that comes to one of them, nothing else happens. */
-struct settled {
-    uint8_t n;
-    uint32_t bits[SETTLED_MAX][(GRRL_MAX_FEATURES + 31) / 32];
+/* Features of groups that grow no more: seeds among them would lead to the same groups. */
+struct explained {
+    uint32_t bits[(GRRL_MAX_FEATURES + 31) / 32];
 };
 
-static void set_bits(const uint16_t *group, uint16_t n, uint32_t *bits)
+static bool is_explained(const struct explained *explained, uint16_t slot)
+{
+    return (explained->bits[slot / 32] >> slot % 32 & 1u) != 0;
+}
+
+static void explain(struct explained *explained, const uint16_t *group, uint16_t n)
 {
     for (uint16_t i = 0; i < n; i++)
-        bits[group[i] / 32] |= UINT32_C(1) << group[i] % 32;
-}
-
-static bool is_settled(const struct settled *settled, const uint16_t *group, uint16_t n)
-{
-    uint32_t bits[(GRRL_MAX_FEATURES + 31) / 32] = {0};
-    set_bits(group, n, bits);
-    for (uint8_t i = 0; i < settled->n; i++)
-        if (memcmp(bits, settled->bits[i], sizeof bits) == 0)
-            return true;
-    return false;
-}
-
-static void remember(struct settled *settled, const uint16_t *group, uint16_t n)
-{
-    if (settled->n == SETTLED_MAX)
-        return;
-    memset(settled->bits[settled->n], 0, sizeof settled->bits[0]);
-    set_bits(group, n, settled->bits[settled->n++]);
+        explained->bits[group[i] / 32] |= UINT32_C(1) << group[i] % 32;
 }
 
 /*
@@ -323,7 +306,7 @@ static void remember(struct settled *settled, const uint16_t *group, uint16_t n)
  * last round saw little, and has not yet met what it gained.
  */
 static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uint16_t n, uint8_t k0,
-                     const struct choice_of_keyframes *chosen, struct settled *settled,
+                     const struct choice_of_keyframes *chosen, struct explained *explained,
                      uint16_t *group, uint16_t *stable)
 {
     uint16_t grown[GRRL_MAX_FEATURES];
@@ -334,10 +317,8 @@ static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uin
         memcpy(group, grown, n_grown * sizeof group[0]);
         *stable = n_grown < n_group ? n_grown : n_group;
         n_group = n_grown;
-        if (same)
-            remember(settled, group, n_group);
-        if (same || is_settled(settled, group, n_group)) {
-            *stable = n_group;
+        if (same) {
+            explain(explained, group, n_group);
             break;
         }
     }
@@ -354,14 +335,14 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     uint16_t best = 0;
     uint16_t n_members = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
-    struct settled settled = {0};
+    struct explained explained = {{0}};
     for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
         uint16_t group[GRRL_MAX_FEATURES];
-        if (p->keyframe[k0].weight[slots[i]] == 0)
+        if (p->keyframe[k0].weight[slots[i]] == 0 || is_explained(&explained, slots[i]))
             continue;
         uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
         uint16_t stable = n_group;
-        n_group = grow(p, slots, n, k0, &chosen, &settled, group, &stable);
+        n_group = grow(p, slots, n, k0, &chosen, &explained, group, &stable);
         if (stable > best) {
             best = stable;
             n_members = n_group;

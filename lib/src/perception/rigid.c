@@ -215,8 +215,9 @@ static void spread_shape(const struct grrl_perception *p, uint16_t n, struct grr
                 fit_pose(p, k, known->slot, known->n, shape, &poses[k * stride]);
 }
 
-/* Generalised Procrustes analysis (Gower 1975): poses for a shape, then the shape for the poses,
- * twice. */
+/* Generalised Procrustes analysis (Gower 1975): poses for a shape, the shape for these, and the
+ * poses for that. The errors of the first shape, from one keyframe, turn all poses alike, so a
+ * further round gains nothing. */
 void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                     struct grrl_vec2 *shape, struct grrl_perception_pose *poses, size_t stride)
 {
@@ -225,17 +226,11 @@ void grrl_rigid_fit(const struct grrl_perception *p, const uint16_t *slots, uint
     for (uint8_t k = 0; k < p->n_keyframes; k++)
         fit_pose(p, k, known.slot, known.n, shape, &poses[k * stride]);
     spread_shape(p, n, shape, poses, stride, &known);
-    bool all = known.n == n;
-    const uint16_t *fitted = all ? slots : known.slot;
     for (uint16_t i = 0; i < known.n; i++)
-        (void)grrl_rigid_place(p, fitted[i], poses, stride, &shape[fitted[i]]);
-    centre(fitted, known.n, shape);
+        (void)grrl_rigid_place(p, known.slot[i], poses, stride, &shape[known.slot[i]]);
+    centre(known.slot, known.n, shape);
     for (uint8_t k = 0; k < p->n_keyframes; k++)
-        fit_pose(p, k, fitted, known.n, shape, &poses[k * stride]);
-    for (uint16_t i = 0; i < known.n; i++)
-        (void)grrl_rigid_place(p, fitted[i], poses, stride, &shape[fitted[i]]);
-    for (uint8_t k = 0; k < p->n_keyframes; k++)
-        fit_pose(p, k, fitted, known.n, shape, &poses[k * stride]);
+        fit_pose(p, k, known.slot, known.n, shape, &poses[k * stride]);
 }
 
 /* Whether a point is farther off its body than noise, or a joint too small to detect, can explain.
