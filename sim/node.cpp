@@ -13,7 +13,7 @@ namespace
 
 constexpr int64_t silence_us = 1000000;
 constexpr size_t max_in_burst = 16; /* fit the receive buffer of any socket */
-constexpr int max_retries = 10;      /* at a scene in which the agent finds nothing to push */
+constexpr int max_retries = 10;     /* at a scene in which the agent finds nothing to push */
 
 int8_t reason_on_the_wire(PushReason reason)
 {
