@@ -159,14 +159,9 @@ static enum grrl_run_result perceive(struct grrl_run *run,
 static enum grrl_status print_term(struct grrl_run *run, const struct grrl_model *model)
 {
     struct grrl_term_store store;
-    struct grrl_graph graph;
-    struct grrl_name names[GRRL_MAX_LINKS];
-    struct grrl_edge edges[GRRL_MAX_JOINTS];
     grrl_term term;
     grrl_term_store_init(&store, run->nodes, GRRL_RUN_TERM_NODES);
-    grrl_relational_state_of(model, GRRL_RUN_LARGE_M, &graph, names, edges);
-    enum grrl_status status =
-        grrl_graph_to_term(&store, &graph, names, edges, model->n_joints, true, &term);
+    enum grrl_status status = grrl_relational_term_of(model, GRRL_RUN_LARGE_M, &store, &term);
     return status == GRRL_OK ? grrl_term_print(&store, term, sizeof run->term, run->term, NULL)
                              : status;
 }
