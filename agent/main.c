@@ -8,12 +8,15 @@
 #include "found.h"
 #include "options.h"
 #include "process.h"
+#include "shipped_store.h"
 #include "store_file.h"
 
 static struct grrl_agent agent; /* large, and there is only one */
 
 /* Beyond EXIT_FAILURE and the 2 of a wrong command line. */
 enum { EXIT_STOPPED = 3 };
+
+enum { PATH_BYTES = 4096 };
 
 struct run {
     struct grrl_agent_options options;
@@ -123,6 +126,22 @@ static void loop(struct run *run, lcm_t *lcm)
     }
 }
 
+/* Fills in a new store from the one it starts with. */
+static bool start_store(const struct run *run)
+{
+    char path[PATH_BYTES];
+    struct grrl_store_report report;
+    grrl_shipped_store_path(run->options.start, sizeof path, path);
+    if (!grrl_store_file_copy(&grrl_file_calls_posix, path, &agent.learner, &report)) {
+        (void)fprintf(stderr, "grrl-agent: --start: %s\n", report.text);
+        return false;
+    }
+    if (!run->options.quiet)
+        (void)printf("%s is new: it starts with %" PRIu32 " %s of %s\n", run->options.store,
+                     grrl_learner_usage(&agent.learner).n, run->options.policy->entries, path);
+    return true;
+}
+
 static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
 {
     struct grrl_store_report report;
@@ -135,9 +154,10 @@ static bool start(struct run *run, struct grrl_agent_config *config, lcm_t *lcm)
         return true;
     enum grrl_store_result result =
         grrl_store_file_load(&grrl_file_calls_posix, run->options.store, &agent.learner, &report);
-    if (result != GRRL_STORE_LOADED) /* --quiet does not silence losses */
+    if (report.text[0] != '\0') /* --quiet does not silence losses */
         (void)fprintf(stderr, "grrl-agent: %s\n", report.text);
-    if (result == GRRL_STORE_REFUSED)
+    if (result == GRRL_STORE_REFUSED ||
+        (result == GRRL_STORE_NEW && run->options.start != NULL && !start_store(run)))
         return false;
     save(run); /* shows before learning whether the file can be written */
     return !run->failed;

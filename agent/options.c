@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_PARAMETERS = 32, N_LIMITS = 6, HELP_BYTES = 160 };
+enum { MAX_PARAMETERS = 24, N_LIMITS = 6, HELP_BYTES = 160 };
 
 static const struct grrl_program program = {
     .name = "grrl-agent",
@@ -216,6 +216,8 @@ static enum grrl_options_result configure(const struct given *given, size_t n,
         (void)snprintf(what, sizeof what, "--store: the policy %s does not learn", policy->name);
         return grrl_options_wrong(&program, what);
     }
+    if (options->start != NULL && options->store == NULL)
+        return grrl_options_wrong(&program, "--start needs --store, the file that it starts");
     return GRRL_OPTIONS_RUN;
 }
 
@@ -236,6 +238,10 @@ enum grrl_options_result grrl_agent_options_parse(int argc, char **argv,
         grrl_option_text("store", "FILE",
                          "load what was learned from FILE and save it there after each trial",
                          &options->store),
+        grrl_option_text("start", "FILE",
+                         "if there is no --store FILE yet, start with what this one holds;\n"
+                         "mixed: the one that comes with grrl",
+                         &options->start),
         grrl_option_u32("experiences", "N",
                         "memory for N cases or experiences, 1 to 1000000 (1000)", 1, 1000000,
                         &options->experiences),

@@ -15,6 +15,7 @@ struct grrl_agent_options {
     const struct grrl_policy_type *policy;
     void *policy_config; /* of the policy; NULL: it has none */
     const char *store;   /* NULL: nothing is kept */
+    const char *start;   /* NULL: a new store starts empty */
     const char *lcm_url; /* NULL: LCM_DEFAULT_URL, or LCM's default */
     uint32_t experiences;
     double tracker_timeout_s; /* 0: wait forever */

@@ -223,13 +223,12 @@ static const char *advice(enum grrl_status status)
     case GRRL_ERR_FULL:
         return "it holds more than fits: raise --experiences";
     case GRRL_ERR_FORMAT:
-        return "this is not a store; name another file with --store";
+        return "this is not a store; name another file";
     case GRRL_ERR_POLICY:
-        return "it belongs to another policy; choose that one with --policy, or name another file "
-               "with --store";
+        return "it belongs to another policy; choose that one with --policy, or name another file";
     default:
         return "written by another version or with other limits; use the program that wrote it, or "
-               "name another file with --store";
+               "name another file";
     }
 }
 
@@ -306,7 +305,7 @@ enum grrl_store_result grrl_store_file_load(const struct grrl_file_calls *calls,
     if (!open_stream(&stream, calls, path, O_RDONLY)) {
         grrl_learner_clear(learner);
         if (stream.error == ENOENT)
-            return GRRL_STORE_LOADED;
+            return GRRL_STORE_NEW;
         (void)fail(report, path, strerror(stream.error));
         return GRRL_STORE_REFUSED;
     }
@@ -328,4 +327,23 @@ enum grrl_store_result grrl_store_file_load(const struct grrl_file_calls *calls,
     if (result == GRRL_STORE_REFUSED || status == GRRL_ERR_CORRUPT)
         grrl_learner_clear(learner);
     return result;
+}
+
+bool grrl_store_file_copy(const struct grrl_file_calls *calls, const char *path,
+                          struct grrl_learner *learner, struct grrl_store_report *report)
+{
+    struct stream stream;
+    uint32_t lost = 0;
+    report->text[0] = '\0';
+    if (!open_stream(&stream, calls, path, O_RDONLY))
+        return fail(report, path, strerror(stream.error));
+    enum grrl_status status = read_file(&stream, learner, &lost);
+    bool readable = close_stream(&stream);
+    if (readable && status == GRRL_OK)
+        return true;
+    grrl_learner_clear(learner);
+    if (!readable)
+        return fail(report, path, strerror(stream.error));
+    bool damaged = status == GRRL_ERR_IO || status == GRRL_ERR_CORRUPT;
+    return fail(report, path, damaged ? "the file is damaged" : advice(status));
 }

@@ -33,7 +33,8 @@ struct grrl_file_calls {
 extern const struct grrl_file_calls grrl_file_calls_posix;
 
 enum grrl_store_result {
-    GRRL_STORE_LOADED,    /* also if there is no file yet: the learner starts empty */
+    GRRL_STORE_LOADED,
+    GRRL_STORE_NEW,       /* there is no file yet: the learner is empty */
     GRRL_STORE_SET_ASIDE, /* damaged: the learner has the complete entries before a torn end, or
                              nothing; the report says what was kept and where the file is now */
     GRRL_STORE_REFUSED    /* the file is unchanged and the learner is empty */
@@ -48,6 +49,12 @@ GRRL_MUST_USE enum grrl_store_result grrl_store_file_load(const struct grrl_file
                                                           const char *path,
                                                           struct grrl_learner *learner,
                                                           struct grrl_store_report *report);
+
+/* Loads a file that stays as it is, to start a new store with. False if it is missing, damaged or
+ * of another kind: then the learner is empty. */
+GRRL_MUST_USE bool grrl_store_file_copy(const struct grrl_file_calls *calls, const char *path,
+                                        struct grrl_learner *learner,
+                                        struct grrl_store_report *report);
 
 /* After a failure the file is unchanged; or it has the new content, if only the final sync of the
  * folder failed. */

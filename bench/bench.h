@@ -47,6 +47,8 @@ extern const struct bench_peer bench_boost;
 #endif
 #ifdef GRRL_BENCH_IGRAPH
 extern const struct bench_peer bench_igraph;
+extern const struct bench_peer bench_lad;
+extern const struct bench_peer bench_bliss; /* isomorphism only */
 #endif
 #ifdef GRRL_BENCH_NAUTY
 extern const struct bench_peer bench_nauty;
@@ -56,6 +58,17 @@ extern const struct bench_peer bench_nauty_kept; /* canonical forms made when bu
 #ifdef GRRL_BENCH_NETWORKX
 /* Nanoseconds per query and to build both graphs, measured in Python; false on failure. */
 bool bench_networkx(const struct bench_pair *pairs, unsigned n, double *match_ns, double *build_ns);
+#endif
+
+#ifdef GRRL_BENCH_RDKIT
+/* A library of molecules that stand for states. count: how many contain the query, at most `max`.
+ */
+void *bench_rdkit_open(void);
+void bench_rdkit_close(void *library);
+void bench_rdkit_add(void *library, const struct grrl_graph *graph);
+void *bench_rdkit_query(const struct grrl_graph *graph);
+void bench_rdkit_close_query(void *query);
+unsigned bench_rdkit_count(void *library, const void *query, unsigned max);
 #endif
 
 /* CPU time of this thread in nanoseconds, so that other processes do not count. */

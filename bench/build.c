@@ -5,12 +5,12 @@
 
 #include "bench.h"
 
-enum { MOST_NODES = 8 * GRRL_MAX_LINKS, SWEEPS = 21 };
+enum { MAX_NODES = 8 * GRRL_MAX_LINKS, SWEEPS = 21 };
 
 struct described {
     struct grrl_graph graph;
     struct grrl_term_store store;
-    struct grrl_term_node nodes[MOST_NODES];
+    struct grrl_term_node nodes[MAX_NODES];
     grrl_term term;
 };
 
@@ -19,7 +19,7 @@ static void describe(struct described *described)
     struct grrl_name names[GRRL_MAX_LINKS];
     for (uint16_t i = 0; i < GRRL_MAX_LINKS; i++)
         names[i] = (struct grrl_name){GRRL_NAME_LINK, (uint16_t)(i + 1)};
-    grrl_term_store_init(&described->store, described->nodes, MOST_NODES);
+    grrl_term_store_init(&described->store, described->nodes, MAX_NODES);
     if (grrl_graph_to_term(&described->store, &described->graph, names, NULL, 0, false,
                            &described->term) != GRRL_OK)
         abort();

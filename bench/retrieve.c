@@ -5,7 +5,7 @@
 #include "bench.h"
 #include "grrl/learner/relational_q/experience.h"
 
-enum { N_QUERIES = 500, MOST_LINKS = 16, FEWEST_LINKS = 4 };
+enum { N_QUERIES = 500, N_CONTAINED = 100, MAX_LINKS = 16, MIN_LINKS = 4 };
 
 enum query {
     QUERY_STORED, /* a stored state, its links in a different order */
@@ -36,7 +36,7 @@ static void *allocate(size_t n, size_t size)
 
 static void random_state(struct grrl_random *random, struct grrl_graph *graph)
 {
-    uint8_t n = (uint8_t)(FEWEST_LINKS + grrl_random_below(random, MOST_LINKS - FEWEST_LINKS + 1));
+    uint8_t n = (uint8_t)(MIN_LINKS + grrl_random_below(random, MAX_LINKS - MIN_LINKS + 1));
     bench_graph(random, (enum bench_shape)grrl_random_below(random, BENCH_SHAPES), n, graph);
 }
 
@@ -147,14 +147,99 @@ static void run_queries(struct setup *setup, enum grrl_recall_level deepest, uin
     report(setup, level, kind, spent, known / N_QUERIES);
 }
 
+/* --- states that contain a query -------------------------------------------------------------- */
+
+/* Counts the stored states that contain the query, at most `max`: screens by counts, then searches.
+ */
+static unsigned count_containing(const struct grrl_experience_store *store,
+                                 const struct grrl_graph *query, unsigned max)
+{
+    struct grrl_signature signature;
+    struct grrl_paths paths;
+    unsigned n = 0;
+    grrl_signature_of(query, GRRL_ALL_PROPERTIES, &signature);
+    grrl_paths_of(query, &paths);
+    for (uint32_t i = 0; i < store->n_states && n < max; i++) {
+        const struct grrl_experience_state *state = &store->states[i];
+        if (!grrl_signature_within(&signature, &state->signature, false) ||
+            !grrl_paths_within(&paths, &state->paths))
+            continue;
+        struct grrl_graph graph;
+        uint8_t map[GRRL_MAX_LINKS];
+        grrl_experience_graph(state, &graph);
+        n += grrl_match_find(GRRL_MATCH_MONOMORPHISM, query, &graph, GRRL_ALL_PROPERTIES,
+                             GRRL_MATCH_BUDGET, map) == GRRL_OK;
+    }
+    return n;
+}
+
+static void report_containing(struct setup *setup, const char *peer, enum query kind, double *spent,
+                              unsigned found)
+{
+    bench_sort(spent, N_CONTAINED);
+    double median = bench_quantile(spent, N_CONTAINED, 0.5);
+    double worst = spent[N_CONTAINED - 1];
+    if (setup->json)
+        (void)printf(",\n{\"states\": %u, \"peer\": \"%s\", \"level\": \"containing\", \"query\": "
+                     "\"%s\", \"median_ns\": %.0f, \"worst_ns\": %.0f, \"found\": %u}",
+                     setup->store.n_states, peer, query_names[kind], median, worst, found);
+    else
+        (void)printf(
+            "| %6u | %-5s | containing    | %-18s | %9.1f |           | %9.1f | %5u found |\n",
+            setup->store.n_states, peer, query_names[kind], median / 1e3, worst / 1e3, found);
+}
+
+/* Which states contain the query, asked of the library and of RDKit. */
+static void run_containing(struct setup *setup, void *molecules, enum query kind)
+{
+    double spent[2][N_CONTAINED];
+    unsigned found[2] = {0, 0};
+    for (int i = 0; i < N_CONTAINED; i++) {
+        struct grrl_graph graph;
+        make_query(setup, kind, &graph);
+        double start = bench_now_ns();
+        found[0] += count_containing(&setup->store, &graph, GRRL_RECALL_STATES);
+        spent[0][i] = bench_now_ns() - start;
+#ifdef GRRL_BENCH_RDKIT
+        void *query = bench_rdkit_query(&graph);
+        start = bench_now_ns();
+        found[1] += bench_rdkit_count(molecules, query, GRRL_RECALL_STATES);
+        spent[1][i] = bench_now_ns() - start;
+        bench_rdkit_close_query(query);
+#endif
+    }
+    report_containing(setup, "grrl", kind, spent[0], found[0]);
+    if (molecules != NULL)
+        report_containing(setup, "RDKit", kind, spent[1], found[1]);
+}
+
+static void compare_containing(struct setup *setup)
+{
+    void *molecules = NULL;
+#ifdef GRRL_BENCH_RDKIT
+    molecules = bench_rdkit_open();
+    for (uint32_t i = 0; i < setup->store.n_states; i++) {
+        struct grrl_graph graph;
+        grrl_experience_graph(&setup->store.states[i], &graph);
+        bench_rdkit_add(molecules, &graph);
+    }
+#endif
+    for (int kind = 0; kind < QUERIES; kind++)
+        run_containing(setup, molecules, (enum query)kind);
+#ifdef GRRL_BENCH_RDKIT
+    bench_rdkit_close(molecules);
+#endif
+}
+
 int bench_retrieve(bool json)
 {
     static const uint32_t sizes[] = {1000, 100000};
     static const unsigned closest[] = {32, 64, GRRL_RECALL_STATES};
     struct setup setup = {.json = json, .first = true};
-    (void)printf(json ? "["
-                      : "| states | index | level | query | median, us | p99 | worst | actions "
-                        "known, %% |\n|---|---|---|---|---|---|---|---|\n");
+    (void)printf(
+        json ? "["
+             : "| states | index or peer | level | query | median, us | p99 | worst | actions "
+               "known, %% |\n|---|---|---|---|---|---|---|---|\n");
     for (int s = 0; s < 2; s++) {
         for (int with_index = 0; with_index < 2; with_index++) {
             fill(&setup, sizes[s], with_index == 1);
@@ -168,6 +253,8 @@ int bench_retrieve(bool json)
                                 (enum query)kind);
                 }
             }
+            if (with_index == 1)
+                compare_containing(&setup);
             empty(&setup);
         }
     }

@@ -21,7 +21,7 @@ from grrl_lcmtypes import points_t, push_command_t, push_status_t, stop_t
 
 FRAMES_PER_S = 50
 WORKSPACE_M = (-0.5, -0.4, 0.5, 0.4)  # x0, y0, x1, y1: what the arm reaches and nobody stands in
-MOST_FORCE_N, MOST_SPEED_M_S = 10.0, 0.1
+MAX_FORCE_N, MAX_SPEED_M_S = 10.0, 0.1
 
 
 class Robot:
@@ -51,7 +51,7 @@ class Robot:
 
     def may(self, command):
         x0, y0, x1, y1 = WORKSPACE_M
-        return (command.force <= MOST_FORCE_N and command.speed <= MOST_SPEED_M_S and all(
+        return (command.force <= MAX_FORCE_N and command.speed <= MAX_SPEED_M_S and all(
             x0 <= x <= x1 and y0 <= y <= y1 for x, y in (command.start, command.end)))
 
     def report(self, command, state, reason):

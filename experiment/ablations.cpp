@@ -79,7 +79,7 @@ void add_learn(std::vector<Policy> &table)
     static const char *const parts[GRRL_CONTEXT_PARTS] = {
         "direction",        "length",   "tried",     "neighbours",
         "neighbour-length", "revolute", "prismatic", "others-tried",
-        "longer",           "aspect",   "skew"};
+        "longer",           "aspect",   "skew",      "elsewhere"};
     table.push_back(variant(
         "learn", "exact", "only cases with exactly the same context count",
         [](grrl_learner_config &, void *c) { cases(c).mismatch = 0.0f; }));
@@ -92,11 +92,8 @@ void add_learn(std::vector<Policy> &table)
     table.push_back(variant(
         "learn", "no-present", "rewards of the current trial get no extra weight",
         [](grrl_learner_config &, void *c) { cases(c).present = 0.0f; }));
-    table.push_back(variant(
-        "learn", "no-general", "no memory of what all objects have in common",
-        [](grrl_learner_config &, void *c) { cases(c).general = 0.0f; }));
-    table.push_back(variant("learn", "repeats", "may repeat a push while its link stays the same",
-                            [](grrl_learner_config &, void *c) { cases(c).repeats = 1; }));
+    table.push_back(variant("learn", "no-general", "no memory of what all objects have in common",
+                            [](grrl_learner_config &, void *c) { cases(c).general = 0.0f; }));
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         table.push_back(variant("learn", std::string("no-") + parts[i],
                                 std::string("ignores a part of the context: ") + parts[i],

@@ -83,8 +83,7 @@ const char *take_stream(void *context, const char *value)
     std::string object;
     int trials = 0;
     bool before = split_pretrain(value, object, trials);
-    const std::string name = before ? object : value;
-    if (name.size() < 8 || name.substr(name.size() - 7) != ".stream")
+    if (!is_stream(before ? object : value))
         return "a file such as mixed.stream, or mixed.stream:200 for 200 trials before --then";
     return take_object(before ? &options.pretrain : &options.objects, value);
 }

@@ -15,7 +15,7 @@ namespace grrl_experiment
 namespace
 {
 
-constexpr int most_points = 200; /* of a curve; with more there are lines only */
+constexpr int max_points = 200; /* of a curve; with more there are lines only */
 
 /* Lines and bands average this many trials on either side, fewer at the ends. */
 int neighbours(int trials)
@@ -60,7 +60,7 @@ std::string plot_command(const Plan &plan, const Figure &figure, const std::stri
         std::string color = curve.policy->color;
         /* in a transfer, the curve without pretraining is dashed */
         bool dashed = transfer && curve.policy->learns() && curve.before.empty();
-        if (curve.trials() <= most_points)
+        if (curve.trials() <= max_points)
             parts.push_back(index(i) + " using 1:2 with points pt 7 ps 0.3 lc rgb '" + color +
                             "' notitle");
         parts.push_back(index(i) + " using 1:3 with lines lw 2.5 dt " + (dashed ? "2" : "1") +

@@ -13,7 +13,6 @@ namespace
 {
 
 constexpr const char *own_figure = "curves";
-constexpr const char *stream_suffix = ".stream";
 constexpr int paper_pretrain_trials = 50;
 constexpr int matrix_trials = 5;
 constexpr const char *ablations_object = "RPRPRPR";
@@ -66,18 +65,13 @@ void add_curves(Plan &plan, Figure &figure, const Curve &base)
     plan.curves.push_back(base);
 }
 
-bool ends_with(const std::string &text, const std::string &end)
-{
-    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /* Fills in the objects of a course, and returns what is wrong with them. */
 std::string read_course(Course &course, const Conditions &conditions)
 {
     std::string path = grrl_sim::object_path(course.text);
     course.key = read_file(path.empty() ? course.text : path).value_or(course.text);
     course.key += "\n" + conditions.text;
-    course.stream = ends_with(course.text, stream_suffix);
+    course.stream = is_stream(course.text);
     if (course.stream) {
         auto stream = grrl_sim::stream_from_file(course.text);
         if (!stream)
@@ -247,6 +241,12 @@ void add_own(Plan &plan, const Options &options, const std::string &object,
 }
 
 } // namespace
+
+bool is_stream(const std::string &text)
+{
+    const std::string end = ".stream";
+    return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
 
 std::string Curve::object() const
 {

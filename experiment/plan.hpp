@@ -16,6 +16,9 @@ namespace grrl_experiment
 
 struct Options;
 
+/* Whether a text names a file that describes a stream, FILE.stream, and not an object. */
+bool is_stream(const std::string &text);
+
 /* A number of trials with one object, or with a stream that gives each trial one of its own. */
 struct Course {
     std::string text; /* as given by the user */

@@ -1,10 +1,10 @@
 /*
- * camera.c: a zoom and a tilted table, by the distances of points that move together.
+ * camera.c: finds a zoom and a tilted table from the distances between points on one body.
  *
- * Zoom: the logarithm of a distance is one of its pair plus one of its frame; medians of either in
- * turn (Tukey's polish) do not see pairs that two bodies share. Tilt: a plane has one rectification
- * for all frames, two numbers for the angle from which it is seen and two for its horizon
- * (Liebowitz and Zisserman 1998), under which rigid bodies keep their distances.
+ * Zoom: the logarithm of a distance is a term of its pair plus a term of its frame. Alternating
+ * medians (Tukey's median polish) separate the two and ignore pairs of two bodies. Tilt: a plane
+ * has one rectification for all frames, two numbers for the viewing angle and two for the horizon
+ * (Liebowitz and Zisserman 1998). Under it rigid bodies keep their distances.
  */
 #include "camera.h"
 
@@ -13,37 +13,41 @@
 
 #include "camera_pairs.h"
 
-/* A picture that changes less is not scaled: rigid bodies stand that. */
+/* Smallest change of the image's size that is undone: perception copes with less. */
 #define LEAST_ZOOM 0.05
 
-/* Of the pairs in the frames that differ most, so many must change as the picture does, within so
- * many standard deviations of noise and this share. */
+/* Share of the pairs that must change as the image does between the two frames that differ most,
+ * within ZOOM_SIGMAS standard deviations of noise and ZOOM_SLACK of their distance. */
 #define ZOOM_AGREE 0.5
 #define ZOOM_SIGMAS 3.0
 #define ZOOM_SLACK 0.01
 enum { LEAST_PAIRS = 24 };
 
-/* Rounds of medians. */
+/* Rounds of median polish. */
 enum { POLISHES = 6 };
 
-/* A table that is tilted less is not rectified; one tilted more is not looked at. */
+/* Tilts below LEAST_TILT_RAD are not undone; the search ends at MOST_TILT_RAD. */
 #define LEAST_TILT_RAD 0.12f
 #define MOST_TILT_RAD 0.85f
 
-/* Of the farthest point from the centre, the most that the picture is larger at one end. */
+/* Relative change of scale from the centre of the image to its farthest point. */
 #define MOST_HORIZON 0.5
 #define LEAST_HORIZON 0.1
 
-/* Of the cost of the picture as it is, what a tilt must leave at most, and the pairs that must keep
- * their distance under it (count_kept). Without a tilt the best guess left 0.83 of the cost and
- * more, and 0 to 5 pairs (19 once, with 0.95). */
+/* A tilt is accepted if it leaves at most this share of the cost of the original image, and if this
+ * many pairs keep their distance under it (count_kept). In images without a tilt the best guess
+ * left at least 0.83 of the cost and kept 0 to 5 pairs (once 19, with 0.95). */
 #define TILT_COST 0.85
 enum { LEAST_KEPT = 8 };
 
-/* The variance of a distance, in variances of noise, from which on it changes. */
+/* Fewer tracks are no basis for the four numbers of a tilt: of hinges with 16 to 22 points, seen
+ * from above and without a background, 1 to 17% seemed tilted; with 24 and more, 0 of 200. */
+enum { LEAST_TRACKS = 24 };
+
+/* A distance changes if its variance exceeds this many variances of noise. */
 #define CHANGES 4.0
 
-/* The search: where it begins, in natural units, and ends. */
+/* First and last step of the search; PARAMETERS as in struct guess. */
 #define FIRST_STEP 0.1
 #define LAST_STEP 0.002
 enum { PARAMETERS = 4, DIRECTIONS = 8, STARTS = 2 };
@@ -88,7 +92,8 @@ static struct grrl_vec2 centre_of(const struct grrl_tracks *tracks, double *reac
 
 /* --- zoom ------------------------------------------------------------------------------------- */
 
-/* The logarithm of the size of each sampled frame; size[m] and own[i] are worked out in turn. */
+/* Median polish: size[m] becomes the logarithm of the image's size in sampled frame m, own[i] that
+ * of the length of pair i. */
 static void polish(const struct grrl_camera_pairs *pairs, double *size, double *own,
                    double *scratch)
 {
@@ -112,7 +117,7 @@ static void polish(const struct grrl_camera_pairs *pairs, double *size, double *
     }
 }
 
-/* Whether most pairs have the size of frame m against frame k, as far as noise lets one tell. */
+/* Whether most pairs change their length from frame k to m by `change`, within noise. */
 static bool agree(const struct grrl_camera_pairs *pairs, uint32_t k, uint32_t m, double change,
                   double noise)
 {
@@ -154,7 +159,7 @@ static void scale_frames(struct grrl_tracks *tracks, const struct grrl_camera_pa
     }
 }
 
-/* The picture's size from frame to frame, if it is that of most of what it shows. */
+/* Undoes the change of size from frame to frame if most pairs share it. */
 static void undo_zoom(struct grrl_tracks *tracks, const struct grrl_camera_pairs *pairs,
                       double noise, double *own, double *scratch, struct grrl_camera *camera)
 {
@@ -176,8 +181,8 @@ static void undo_zoom(struct grrl_tracks *tracks, const struct grrl_camera_pairs
 
 /* --- tilt ------------------------------------------------------------------------------------- */
 
-/* A rectification: the traceless logarithm of the stretch, and the horizon in units of the reach.
- */
+/* A rectification: the logarithm of the stretch, which has no trace, and the horizon in units of
+ * 1 / reach. */
 struct guess {
     double at[PARAMETERS];
 };
@@ -201,7 +206,8 @@ static struct grrl_vec2 upright(const struct grrl_camera *camera, struct grrl_ve
                               w * (camera->stretch[1] * p.x + camera->stretch[2] * p.y)};
 }
 
-/* The variance of a pair's distance over that of noise, seen from above; *mean: the distance. */
+/* Variance of a pair's distance, by positions `at`, over that of noise. length: of the pair in the
+ * image, to which the noise refers. */
 static double scatter(const struct grrl_camera_pairs *pairs,
                       struct grrl_vec2 (*at)[GRRL_CAMERA_TRACKS], uint32_t i, double noise,
                       double length)
@@ -223,17 +229,16 @@ static double scatter(const struct grrl_camera_pairs *pairs,
     return (relative > 0.0 ? relative : 0.0) * length * length / (2.0 * noise * noise);
 }
 
-/* What the search works on. */
+/* The data of a search. */
 struct search {
     struct grrl_camera_pairs *pairs;
     struct grrl_vec2 (*at)[GRRL_CAMERA_TRACKS]; /* seen from above */
-    double *length;                             /* of each pair, in the picture */
-    double *scattered;                          /* by the last guess */
+    double *length;                             /* mean distance of each pair in the image */
     double noise;
     double reach;
 };
 
-/* Of pairs that two bodies share little depends on the guess: the logarithm sees to that. */
+/* The cost of a guess. The logarithm limits the influence of pairs of two bodies. */
 static double cost_of(const struct search *search, const struct guess *guess)
 {
     struct grrl_camera camera = {0};
@@ -252,8 +257,8 @@ static double cost_of(const struct search *search, const struct guess *guess)
     return cost;
 }
 
-/* Tilts by 30 degrees from all sides with the horizon far, or near on either side: the best ones,
- * best first, for the cost has many dips. */
+/* The best starting points, best first, since the cost has many local minima: tilts by 30 degrees
+ * from all sides, with the horizon far away or near on either side. */
 static void first_guesses(const struct search *search, struct guess *best)
 {
     double least[STARTS];
@@ -277,7 +282,7 @@ static void first_guesses(const struct search *search, struct guess *best)
     }
 }
 
-/* Hooke and Jeeves (1961): along each axis, then on in the direction that all of it went. */
+/* Pattern search (Hooke and Jeeves 1961): steps along each axis, then once more along their sum. */
 static struct guess search_guess(const struct search *search, struct guess best)
 {
     double least = cost_of(search, &best);
@@ -311,7 +316,7 @@ static struct guess search_guess(const struct search *search, struct guess best)
     return best;
 }
 
-/* The distances of the pairs in the picture, on which the noise counts. */
+/* Mean distances of the pairs in the image: the noise is that of the image. */
 static void measure_lengths(const struct search *search)
 {
     for (uint32_t i = 0; i < search->pairs->n_pairs; i++) {
@@ -327,18 +332,18 @@ static void measure_lengths(const struct search *search)
     }
 }
 
-/* Chooses the pairs that a guess keeps best; returns their cost. Two guesses compare fairly only
- * with pairs of their own. */
+/* Chooses the pairs whose distances a guess keeps best; returns their cost. A comparison of two
+ * guesses is fair only if each has chosen its own pairs. */
 static double choose_by(const struct search *search, const struct guess *guess)
 {
-    (void)cost_of(search, guess); /* leaves the positions */
+    (void)cost_of(search, guess); /* for search->at */
     grrl_camera_pairs_choose(search->pairs, search->at, (float)search->noise, true);
     measure_lengths(search);
     return cost_of(search, guess);
 }
 
-/* The guess of least cost over all starts; returns it. First with the pairs of the picture, then
- * with those that the guess keeps. */
+/* The guess of least cost over all starts; returns the cost. Each search runs with the nearest
+ * pairs first and then with those that its guess keeps. */
 static double best_guess(const struct search *search, struct guess *best)
 {
     struct guess start[STARTS];
@@ -361,8 +366,9 @@ static double best_guess(const struct search *search, struct guess *best)
     return least;
 }
 
-/* Pairs whose distance changes in the picture and not under the guess. What grows or is no plane
- * costs less under some guess, too, but hardly a pair of it keeps its distance. */
+/* Counts the pairs whose distance changes in the image but not under the guess. Some guess lowers
+ * the cost of bodies that grow or are not flat, too, but hardly any of their pairs keeps its
+ * distance. */
 static uint32_t count_kept(const struct search *search, const struct guess *guess)
 {
     uint32_t kept = 0;
@@ -412,7 +418,7 @@ bool grrl_camera_undo(struct grrl_tracks *tracks, float noise, struct grrl_camer
                   search.length + GRRL_CAMERA_PAIRS, camera);
         good = !camera->zoomed || grrl_camera_pairs_find(tracks, camera->centre, search.pairs);
     }
-    if (good)
+    if (good && search.pairs->n_tracks >= LEAST_TRACKS)
         undo_tilt(tracks, &search, camera);
     free(search.length);
     free(search.at);
@@ -431,7 +437,7 @@ static struct grrl_vec2 in_picture(const struct grrl_camera *camera, struct grrl
     return grrl_vec2_add(camera->centre, grrl_vec2_scale(q, w));
 }
 
-/* A direction at p, of length 1. */
+/* The image of a direction at p, as a unit vector; length: that of the segment it is taken from. */
 static struct grrl_vec2 axis_in_picture(const struct grrl_camera *camera, struct grrl_vec2 p,
                                         struct grrl_vec2 axis, float length)
 {

@@ -1,4 +1,4 @@
-/* camera_pairs.c: samples of the recording, and which points rather move together. */
+/* camera_pairs.c: samples a recording, and pairs points that probably move together. */
 #include "camera_pairs.h"
 
 #include <math.h>
@@ -7,8 +7,11 @@
 /* Frames in which two points must have been seen to be a pair. */
 enum { LEAST_FRAMES = 4 };
 
-/* A pair is judged by the change of its distance and by so many standard deviations of noise. */
+/* A pair is judged by the change of its distance plus this many standard deviations of noise. */
 #define NOISE_WEIGHT 3.0
+
+/* Of the tracks, at most one in so many is a neighbour: the others may be on another body. */
+enum { NEIGHBOUR_SHARE = 4 };
 
 static void sample_frames(const struct grrl_tracks *tracks, struct grrl_camera_pairs *pairs)
 {
@@ -18,7 +21,7 @@ static void sample_frames(const struct grrl_tracks *tracks, struct grrl_camera_p
         pairs->frame[m] = n > 1 ? m * (tracks->n_frames - 1) / (n - 1) : 0;
 }
 
-/* Positions in the sampled frames of every so manieth track. */
+/* Takes every n-th track, so that they fit, with its positions in the sampled frames. */
 static void sample_tracks(const struct grrl_tracks *tracks, const struct grrl_tracks_sample *sample,
                           struct grrl_vec2 centre, struct grrl_camera_pairs *pairs)
 {
@@ -47,8 +50,9 @@ static void sample_tracks(const struct grrl_tracks *tracks, const struct grrl_tr
     }
 }
 
-/* How little a and b look like one body, where size is known by how much their distance changes
- * for its length, else by that itself; HUGE_VAL: they were hardly seen together. */
+/* How unlikely it is that a and b are on one body: the relative change of their distance, or the
+ * distance itself while the size of the image is not known. HUGE_VAL: they were hardly ever seen
+ * together. */
 static double unlike(const struct grrl_camera_pairs *pairs,
                      struct grrl_vec2 (*at)[GRRL_CAMERA_TRACKS], uint32_t a, uint32_t b,
                      double noise, bool size_known)
@@ -73,18 +77,20 @@ static double unlike(const struct grrl_camera_pairs *pairs,
     return (sqrt(variance > 0.0 ? variance : 0.0) + NOISE_WEIGHT * noise) / mean;
 }
 
-/* The tracks most like a. */
+/* Pairs track a with those that are most likely on its body. */
 static void add_pairs(struct grrl_camera_pairs *pairs, struct grrl_vec2 (*at)[GRRL_CAMERA_TRACKS],
                       uint32_t a, double noise, bool size_known)
 {
     double score[GRRL_CAMERA_NEIGHBOURS];
     uint16_t best[GRRL_CAMERA_NEIGHBOURS];
+    uint32_t most = pairs->n_tracks / NEIGHBOUR_SHARE;
+    most = most < GRRL_CAMERA_NEIGHBOURS ? most : GRRL_CAMERA_NEIGHBOURS;
     uint32_t n = 0;
-    for (uint32_t b = 0; b < pairs->n_tracks; b++) {
+    for (uint32_t b = 0; b < pairs->n_tracks && most > 0; b++) {
         double s = a == b ? HUGE_VAL : unlike(pairs, at, a, b, noise, size_known);
-        if (!isfinite(s) || (n == GRRL_CAMERA_NEIGHBOURS && s >= score[n - 1]))
+        if (!isfinite(s) || (n == most && s >= score[n - 1]))
             continue;
-        uint32_t place = n < GRRL_CAMERA_NEIGHBOURS ? n++ : n - 1;
+        uint32_t place = n < most ? n++ : n - 1;
         for (; place > 0 && score[place - 1] > s; place--) {
             score[place] = score[place - 1];
             best[place] = best[place - 1];

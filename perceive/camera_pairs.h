@@ -1,6 +1,5 @@
 /*
- * camera_pairs.h: distances between points that move together, from which camera.c tells the
- * camera.
+ * camera_pairs.h: pairs of points on one body, whose distances tell camera.c what the camera does.
  */
 #ifndef GRRL_PERCEIVE_CAMERA_PAIRS_H
 #define GRRL_PERCEIVE_CAMERA_PAIRS_H
@@ -13,8 +12,8 @@
 #include "grrl/base/geometry.h"
 
 enum {
-    GRRL_CAMERA_FRAMES = 32,  /* of the recording, evenly */
-    GRRL_CAMERA_TRACKS = 240, /* likewise */
+    GRRL_CAMERA_FRAMES = 32,  /* at most; evenly spaced */
+    GRRL_CAMERA_TRACKS = 240, /* at most; evenly chosen */
     GRRL_CAMERA_NEIGHBOURS = 12,
     GRRL_CAMERA_PAIRS = GRRL_CAMERA_TRACKS * GRRL_CAMERA_NEIGHBOURS
 };
@@ -30,14 +29,16 @@ struct grrl_camera_pairs {
     uint16_t b[GRRL_CAMERA_PAIRS];
 };
 
-/* The positions of tracks in frames; no pairs yet. false: memory is short. */
+/* Samples frames and tracks; there are no pairs yet. false: out of memory. */
 bool grrl_camera_pairs_find(const struct grrl_tracks *tracks, struct grrl_vec2 centre,
                             struct grrl_camera_pairs *pairs);
 
 /*
- * Of each track the neighbours, by positions `at` instead of its own. Those to which its distance
- * changes least for its length rather move with it than others; but while the size of the picture
- * is not known, that would choose pairs which two bodies share, and the nearest are taken.
+ * Pairs each track with its neighbours, by the positions `at` instead of pairs->at: at most
+ * GRRL_CAMERA_NEIGHBOURS, and at most a quarter of the tracks, so that few points are not paired
+ * across bodies. Tracks whose distance changes least, relative to its length, probably move
+ * together. While the size of the image is unknown, that would prefer pairs of two bodies; then the
+ * nearest tracks are taken.
  */
 void grrl_camera_pairs_choose(struct grrl_camera_pairs *pairs,
                               struct grrl_vec2 (*at)[GRRL_CAMERA_TRACKS], float noise,

@@ -19,10 +19,13 @@
 #define SIZE_CHANGE 0.05
 
 /* No table is this wide, in metres. */
+#define LARGE_WORLD_M 20.0
+
+/* Points that scatter by this many times the noise assumed look like motion: 5% more is chance. */
+#define NOISIER 1.3
+
 /* Points that move with no body are told from here on. */
 enum { LEAST_STRAYS = 2 };
-
-#define LARGE_WORLD_M 20.0
 
 /* --- the input -------------------------------------------------------------------------------- */
 
@@ -164,6 +167,18 @@ static unsigned count_strays(const struct grrl_model *model)
     for (unsigned i = 0; i < model->n_features; i++)
         n += model->feature_body[i] == GRRL_FEATURE_NONE;
     return n;
+}
+
+void grrl_doubt_noise(const struct grrl_report *report, double noise_m,
+                      struct grrl_warnings *warnings)
+{
+    double noise = noise_m * report->per_metre;
+    if (noise > NOISIER * report->noise)
+        grrl_warn(
+            warnings,
+            "the points scatter by %.2g %s from frame to frame, but %.2g is assumed, which can "
+            "split bodies: use --noise auto, or --noise X",
+            noise, report->unit, report->noise);
 }
 
 void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *warnings)

@@ -18,6 +18,10 @@ void grrl_doubt_camera(const struct grrl_camera *camera, struct grrl_warnings *w
 void grrl_doubt_unit(const struct grrl_tracks *tracks, const struct grrl_report *report, bool said,
                      struct grrl_warnings *warnings);
 
+/* Points that scatter more, in metres, than the noise that was assumed. */
+void grrl_doubt_noise(const struct grrl_report *report, double noise_m,
+                      struct grrl_warnings *warnings);
+
 /* Points that perception could not use, and their share if it is at least a third. */
 void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *warnings);
 

@@ -25,6 +25,9 @@ enum { SHARE = 10, MOVERS = 3 };
  * three frames each. */
 enum { SHORT_LIFE = 12 };
 
+/* A link of two points is looked for if there are at most so many keyframes. */
+enum { MOVERS_OF_A_LINK = 2, FEW_KEYFRAMES = 4 };
+
 static int by_size(const void *left, const void *right)
 {
     float a = *(const float *)left;
@@ -118,4 +121,54 @@ bool grrl_pace_configure(const struct grrl_tracks *tracks, struct grrl_perceptio
     free(step);
     free(size);
     return good;
+}
+
+/* How many points, by ascending id in both frames, moved farther than `distance` from one to the
+ * other. */
+static unsigned moved_between(const struct grrl_tracks *tracks, size_t from, size_t to,
+                              float distance)
+{
+    size_t a = tracks->frame[from].first;
+    size_t b = tracks->frame[to].first;
+    size_t end_a = a + tracks->frame[from].n;
+    size_t end_b = b + tracks->frame[to].n;
+    unsigned moved = 0;
+    while (a < end_a && b < end_b) {
+        if (tracks->id[a] < tracks->id[b]) {
+            a++;
+        } else if (tracks->id[a] > tracks->id[b]) {
+            b++;
+        } else {
+            float step = hypotf(tracks->x[b] - tracks->x[a], tracks->y[b] - tracks->y[a]);
+            moved += step > distance ? 1u : 0u;
+            a++;
+            b++;
+        }
+    }
+    return moved;
+}
+
+/* The first frame in which two points have moved since frame `from`; n_frames: there is none. */
+static size_t next_stop(const struct grrl_tracks *tracks, size_t from, float distance)
+{
+    size_t f = from + 1;
+    while (f < tracks->n_frames && moved_between(tracks, from, f, distance) < MOVERS_OF_A_LINK)
+        f++;
+    return f;
+}
+
+bool grrl_pace_stop_for_two(struct grrl_tracks *tracks, float keyframe_m, unsigned keyframes)
+{
+    size_t stops = 0;
+    if (keyframes > FEW_KEYFRAMES)
+        return false;
+    for (size_t f = next_stop(tracks, 0, keyframe_m); f < tracks->n_frames;
+         f = next_stop(tracks, f, keyframe_m))
+        stops++;
+    if (stops == 0 || stops < 2 * (size_t)keyframes)
+        return false;
+    for (size_t f = next_stop(tracks, 0, keyframe_m); f < tracks->n_frames;
+         f = next_stop(tracks, f, keyframe_m))
+        tracks->frame[f].pushing = false;
+    return true;
 }

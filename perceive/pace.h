@@ -14,4 +14,13 @@
  */
 bool grrl_pace_configure(const struct grrl_tracks *tracks, struct grrl_perception_config *config);
 
+/*
+ * The library takes a keyframe of a push when three points have moved, so a link of two points
+ * would be seen in the first and last frame only, and pass for a part of another. If a recording
+ * gave hardly any keyframes, and two points moved by `keyframe_m` at least twice as often, each
+ * frame in which they did counts as rest from now on: the library always keeps these. Whether any
+ * does.
+ */
+bool grrl_pace_stop_for_two(struct grrl_tracks *tracks, float keyframe_m, unsigned keyframes);
+
 #endif

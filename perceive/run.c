@@ -10,9 +10,6 @@
  */
 #define SIZE_CHANGE 0.05f
 
-/* A link of two points is looked for if there are hardly any keyframes. */
-enum { MOVERS_OF_A_LINK = 2, FEW_KEYFRAMES = 4 };
-
 static const float pixel_m = 0.001f;
 
 struct grrl_scale grrl_unit_scale(enum grrl_unit unit, bool in_pixels)
@@ -76,51 +73,6 @@ static enum grrl_status observe(struct grrl_perception *perception,
         }
     }
     return grrl_perception_update(perception);
-}
-
-/* Points of frame f, both by ascending id, farther than `distance` from where frame `from` has
- * them.
- */
-static unsigned moved_between(const struct grrl_tracks *tracks, size_t from, size_t f,
-                              float distance)
-{
-    struct grrl_frame a = frame_of(tracks, from);
-    struct grrl_frame b = frame_of(tracks, f);
-    unsigned moved = 0;
-    for (uint32_t i = 0, k = 0; i < a.n && k < b.n;) {
-        if (a.id[i] == b.id[k]) {
-            struct grrl_vec2 d = {b.x_m[k] - a.x_m[i], b.y_m[k] - a.y_m[i]};
-            moved += grrl_vec2_length(d) > distance ? 1u : 0u;
-        }
-        bool next_a = a.id[i] <= b.id[k];
-        k += b.id[k] <= a.id[i] ? 1u : 0u;
-        i += next_a ? 1u : 0u;
-    }
-    return moved;
-}
-
-/*
- * The library takes a keyframe of a push when three points have moved, so a link of two would be
- * seen in the first and last frame only, and pass for a part of another. If that is so, each frame
- * in which two points have moved counts as rest: the library always keeps these. Whether any does.
- */
-static bool stop_for_two(const struct grrl_perception *perception, struct grrl_tracks *tracks)
-{
-    size_t n = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        size_t last = 0;
-        for (size_t f = 1; f < tracks->n_frames; f++) {
-            if (moved_between(tracks, last, f, perception->config.keyframe_m) < MOVERS_OF_A_LINK)
-                continue;
-            last = f;
-            n += pass == 0 ? 1u : 0u;
-            tracks->frame[f].pushing = tracks->frame[f].pushing && pass == 0;
-        }
-        if (perception->counts.keyframes_high > FEW_KEYFRAMES ||
-            n < 2 * (size_t)perception->counts.keyframes_high)
-            return false;
-    }
-    return true;
 }
 
 static unsigned unassigned(const struct grrl_model *model)
@@ -193,7 +145,8 @@ static enum grrl_run_result perceive(struct grrl_run *run,
     run->status = observe(&run->perception, tracks);
     if (run->perception.counts.overflow > 0)
         run->status = observe_chosen(run, config, tracks);
-    if (run->status == GRRL_OK && tracks->log.size == 0 && stop_for_two(&run->perception, tracks) &&
+    if (run->status == GRRL_OK && tracks->log.size == 0 &&
+        grrl_pace_stop_for_two(tracks, config->keyframe_m, run->perception.counts.keyframes_high) &&
         grrl_perception_init(&run->perception, config) == GRRL_OK)
         run->status = observe(&run->perception, tracks);
     if (run->status == GRRL_OK)
@@ -206,14 +159,9 @@ static enum grrl_run_result perceive(struct grrl_run *run,
 static enum grrl_status print_term(struct grrl_run *run, const struct grrl_model *model)
 {
     struct grrl_term_store store;
-    struct grrl_graph graph;
-    struct grrl_name names[GRRL_MAX_LINKS];
-    struct grrl_edge edges[GRRL_MAX_JOINTS];
     grrl_term term;
     grrl_term_store_init(&store, run->nodes, GRRL_RUN_TERM_NODES);
-    grrl_relational_state_of(model, GRRL_RUN_LARGE_M, &graph, names, edges);
-    enum grrl_status status =
-        grrl_graph_to_term(&store, &graph, names, edges, model->n_joints, true, &term);
+    enum grrl_status status = grrl_relational_term_of(model, GRRL_RUN_LARGE_M, &store, &term);
     return status == GRRL_OK ? grrl_term_print(&store, term, sizeof run->term, run->term, NULL)
                              : status;
 }
@@ -225,6 +173,7 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     const struct grrl_perception *perception = &run->perception;
     const struct grrl_model *model = grrl_perception_model(perception);
     double per_metre = 1.0 / (double)scale.metres;
+    float noise_m;
     run->status = print_term(run, model);
     if (run->status != GRRL_OK)
         return GRRL_RUN_FAILED;
@@ -249,6 +198,10 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     grrl_doubt_camera(&run->camera, &run->warnings);
     grrl_doubt_unit(tracks, &run->upright, config->unit_said || config->rectify != NULL,
                     &run->warnings);
+    bool slow = perception->config.push_frames != 1; /* else motion scatters, too */
+    if (slow && config->noise == 0.0f && !config->noise_from_points &&
+        measure_noise(&run->noise, tracks, &noise_m) == GRRL_OK)
+        grrl_doubt_noise(&run->upright, (double)noise_m, &run->warnings);
     grrl_doubt_losses(&run->upright, &run->warnings);
     grrl_camera_to_picture(&run->camera, model, &run->picture);
     run->report = run->upright;

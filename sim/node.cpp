@@ -12,8 +12,8 @@ namespace
 {
 
 constexpr int64_t silence_us = 1000000;
-constexpr size_t most_in_burst = 16; /* fit the receive buffer of any socket */
-constexpr int max_retries = 10;      /* at a scene in which the agent finds nothing to push */
+constexpr size_t max_in_burst = 16; /* fit the receive buffer of any socket */
+constexpr int max_retries = 10;     /* at a scene in which the agent finds nothing to push */
 
 int8_t reason_on_the_wire(PushReason reason)
 {
@@ -342,7 +342,7 @@ bool Node::send_frame()
     grrl_points_t &points = points_.message;
     points.phase = advance_world();
     bool more = !config_.real_time && config_.camera == nullptr && seq_ > trial_seq_ &&
-                phase_ != Phase::DECIDING && burst_.size() + 1 < most_in_burst;
+                phase_ != Phase::DECIDING && burst_.size() + 1 < max_in_burst;
     points.mode = config_.real_time ? GRRL_POINTS_T_REAL_TIME
                   : more            ? GRRL_POINTS_T_MORE
                                     : GRRL_POINTS_T_LOCK_STEP;

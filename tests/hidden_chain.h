@@ -11,7 +11,8 @@
 
 /*
  * A chain of links whose joints are hidden at first. A push across a body with hidden joints
- * (direction 2) reveals its last joint; any other push reveals nothing.
+ * (direction 2) reveals its last joint; any other push reveals nothing. A stiff chain gives way at
+ * every second push only.
  */
 static struct {
     const char *joints; /* of the whole chain */
@@ -22,6 +23,8 @@ static struct {
     uint8_t n_revealed;
     unsigned frames;
     bool nothing_seen;
+    bool stiff;
+    unsigned pushes_across;
     struct grrl_model model;
 } world;
 
@@ -124,7 +127,7 @@ static void world_reveal(uint8_t body)
 
 static bool world_push(const struct grrl_choice *choice)
 {
-    if (choice->direction == 2)
+    if (choice->direction == 2 && (!world.stiff || ++world.pushes_across % 2 == 0))
         world_reveal(choice->link);
     return world.n_revealed == strlen(world.joints);
 }

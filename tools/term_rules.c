@@ -8,7 +8,7 @@
 
 #include "term_store.h"
 
-enum { MOST_RULES = 24, MOST_VALUES = 8 };
+enum { MAX_RULES = 24, MAX_VALUES = 8 };
 
 /* A rule holds for at least this share of all pushes. */
 #define LEAST_SHARE 0.01
@@ -32,10 +32,8 @@ struct split {
 
 static bool holds(const struct rule *rule, const struct grrl_case *met)
 {
-    struct grrl_context context;
-    grrl_context_of_key(met->key, &context);
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        if ((rule->values[i] >> context.part[i] & 1u) == 0)
+        if ((rule->values[i] >> grrl_context_part(met->key, i) & 1u) == 0)
             return false;
     return true;
 }
@@ -89,12 +87,12 @@ static struct split best_split(const struct grrl_case_base *base, const struct r
 
 static unsigned grow(const struct grrl_case_base *base, double least, struct rule *rules)
 {
-    struct split split[MOST_RULES];
+    struct split split[MAX_RULES];
     unsigned n = 1;
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
         rules[0].values[i] = (uint8_t)((2u << grrl_context_max[i]) - 1u);
     split[0] = best_split(base, &rules[0], least);
-    while (n < MOST_RULES) {
+    while (n < MAX_RULES) {
         unsigned best = 0;
         for (unsigned i = 1; i < n; i++)
             best = split[i].gain > split[best].gain ? i : best;
@@ -115,7 +113,7 @@ static unsigned grow(const struct grrl_case_base *base, double least, struct rul
 
 static const struct {
     const char *name;
-    const char *value[MOST_VALUES]; /* NULL beyond the largest, which no rule has */
+    const char *value[MAX_VALUES]; /* NULL beyond the largest, which no rule has */
 } words[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_DIRECTION] = {"A", {"0|180", "45|225", "90|270"}},
     [GRRL_CONTEXT_LENGTH] = {"length", {"tiny", "short", "long", "longer", "longest"}},
@@ -129,6 +127,8 @@ static const struct {
     [GRRL_CONTEXT_LONGER] = {"longer links", {"0", "1", "2+"}},
     [GRRL_CONTEXT_ASPECT] = {"shape", {"slender", "stout", "round"}},
     [GRRL_CONTEXT_SKEW] = {"thins out", {"neither way", "behind", "ahead"}},
+    [GRRL_CONTEXT_ELSEWHERE] = {"known elsewhere",
+                                {"nothing", "revolute", "prismatic", "both types"}},
 };
 
 /* Prints the values of a part, such as one|other; whether the part says anything at all. */
@@ -176,8 +176,8 @@ static double explained_by_cases(const struct grrl_case_base *base)
 
 void term_rules_print(const struct grrl_case_base *base)
 {
-    struct rule rules[MOST_RULES];
-    struct sum sums[MOST_RULES];
+    struct rule rules[MAX_RULES];
+    struct sum sums[MAX_RULES];
     struct sum all = {0.0, 0.0, 0.0};
     double by_rules = 0.0;
     for (uint32_t i = 0; i < base->n; i++) {
@@ -189,7 +189,7 @@ void term_rules_print(const struct grrl_case_base *base)
         sums[i] = sum_of(base, &rules[i]);
         by_rules += explained(&sums[i]);
     }
-    bool printed[MOST_RULES] = {false};
+    bool printed[MAX_RULES] = {false};
     puts("found something  reward  push");
     for (unsigned k = 0; k < n; k++) {
         unsigned best = n;

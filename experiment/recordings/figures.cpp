@@ -42,13 +42,6 @@ void add(const Outcome &outcome, Kind kind, bool fixed, Figures &f)
                 f.calibration[i] += {called.right, 1};
 }
 
-/* The camera is at its usual level, at rest and straight above. */
-bool is_fixed(const std::string &conditions)
-{
-    return conditions.find("camera=") == std::string::npos ||
-           conditions.find("camera=fixed") != std::string::npos;
-}
-
 std::string cell(const Share &share)
 {
     char text[16] = "-";
@@ -137,7 +130,8 @@ Interval Share::interval() const
     double centre = p + z * z / (2.0 * n);
     double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
     double scale = 100.0 / (1.0 + z * z / n);
-    return {scale * (centre - half), scale * (centre + half)};
+    return {std::max(0.0, scale * (centre - half)),
+            std::min(100.0, scale * (centre + half))}; /* rounding */
 }
 
 std::vector<std::string> conditions_of(const std::vector<Result> &results)
@@ -157,7 +151,8 @@ Figures figures(const std::vector<Result> &results, Method method, const std::st
         bool wanted = (conditions.empty() || conditions == result.cell->conditions) &&
                       (object.empty() || object == result.cell->object->name);
         if (wanted)
-            add(result.of[method], result.cell->object->kind, is_fixed(result.cell->conditions), f);
+            add(result.of[method], result.cell->object->kind,
+                result.cell->what.camera == Camera::FIXED, f);
     }
     return f;
 }

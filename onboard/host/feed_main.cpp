@@ -26,7 +26,7 @@ using namespace grrl_sim;
 namespace
 {
 
-constexpr int most_pushes = 100;
+constexpr int max_pushes = 100;
 constexpr int patience_ms = 600000; /* an emulated line on a busy machine is slow */
 
 struct Host {
@@ -143,7 +143,7 @@ int trial(const ObjectSpec &object, uint64_t seed, int32_t number)
     send();
     int pushes = 0;
     grrl_decision decision;
-    while (pushes < most_pushes && decide(world, pushes > 0, decision)) {
+    while (pushes < max_pushes && decide(world, pushes > 0, decision)) {
         grrl_graph estimated;
         grrl_relational_state_of(grrl_perception_model(&host.learner.perception),
                                  host.learner.config.large_m, &estimated, nullptr, nullptr);

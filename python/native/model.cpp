@@ -164,14 +164,9 @@ std::string term_of(const grrl_model &model, float large_m)
     std::vector<grrl_term_node> nodes(term_nodes);
     std::vector<char> text(term_bytes);
     auto store = std::make_unique<grrl_term_store>();
-    grrl_graph graph;
-    grrl_name names[GRRL_MAX_LINKS];
-    grrl_edge edges[GRRL_MAX_JOINTS];
     grrl_term term;
     grrl_term_store_init(store.get(), nodes.data(), term_nodes);
-    grrl_relational_state_of(&model, large_m, &graph, names, edges);
-    must(grrl_graph_to_term(store.get(), &graph, names, edges, model.n_joints, true, &term),
-         "the term of the model");
+    must(grrl_relational_term_of(&model, large_m, store.get(), &term), "the term of the model");
     must(grrl_term_print(store.get(), term, text.size(), text.data(), nullptr),
          "the term of the model");
     return text.data();

@@ -64,6 +64,15 @@ refused 1 "$SIM" --object RR --lcm-url "$URL" --agent-timeout 0.3
 refused 1 "$SIM" --object RR --lcm-url "$URL" --results no/such/folder/r.csv
 refused 1 "$SIM" --object RR --lcm-url "$URL" --log no/such/folder/run.lcm
 refused 1 "$AGENT" --lcm-url "$URL" --store no/such/folder/a.store
+refused 2 "$AGENT" --start mixed # of nothing
+refused 1 "$AGENT" --lcm-url "$URL" --store started.store --start no/such/a.store
+[ ! -e started.store ] || fail "a store without the one it should start with"
+refused 1 "$AGENT" --lcm-url "$URL" --store started.store --start mixed --policy paper # learn's
+timeout 20 "$AGENT" --lcm-url "$URL" --store started.store --start mixed --tracker-timeout 0.3 >out.txt 2>err.txt
+grep -q 'started.store is new: it starts with [0-9]* cases of .*/mixed.store' out.txt || fail "--start: $(cat out.txt)"
+cp started.store before.store
+timeout 20 "$AGENT" --lcm-url "$URL" --store started.store --start no/such/a.store --tracker-timeout 0.3 >out.txt 2>err.txt
+same before.store started.store # it was there: --start has no effect
 refused 1 "$AGENT" --lcm-url bogus
 refused 1 "$AGENT" --lcm-url 'file://missing.lcm'
 

@@ -13,6 +13,7 @@ extern "C" {
 #include <cmath>
 #include <map>
 
+#include "recordings/figures.hpp"
 #include "recordings/grid.hpp"
 #include "recordings/joint_error.hpp"
 #include "recordings/json.hpp"
@@ -181,6 +182,29 @@ void test_grid(void **)
         assert_false(static_cast<bool>(make_grid(wrong)));
 }
 
+/* Of a camera at rest are the mechanisms with the usual camera, whether an axis names it or not. */
+void test_figures_of_a_camera_at_rest(void **)
+{
+    auto cells = make_grid("camera=fixed,roll; objects=R,two; rate=30,3");
+    auto usual = make_grid("objects=R,two; tracks=whole,late");
+    for (const Cell &cell : *usual.value)
+        cells.value->push_back(cell);
+    std::vector<Result> results;
+    for (const Cell &cell : *cells.value) {
+        results.emplace_back();
+        results.back().cell = &cell;
+        Score &score = results.back().of[OURS].score;
+        score.joints = 1;
+        score.right = cell.what.camera == Camera::FIXED;
+    }
+    Figures f = figures(results, OURS, "", "");
+    assert_int_equal(f.recordings, 2 * 2 * 2 + 2 * 2);
+    assert_int_equal(f.right.of, 6); /* R alone is a mechanism */
+    assert_int_equal(f.fixed.of, 4);
+    assert_int_equal(f.fixed.part, 4);
+    assert_int_equal(figures(results, OURS, "camera=roll,rate=3", "R").fixed.of, 0);
+}
+
 /* Merging by BIC finds what nothing disturbs. */
 void test_merging(void **)
 {
@@ -202,9 +226,10 @@ void test_merging(void **)
 int main()
 {
     const CMUnitTest tests[] = {
-        cmocka_unit_test(test_scenes), cmocka_unit_test(test_recordings),
-        cmocka_unit_test(test_score),  cmocka_unit_test(test_json),
-        cmocka_unit_test(test_grid),   cmocka_unit_test(test_merging),
+        cmocka_unit_test(test_scenes),  cmocka_unit_test(test_recordings),
+        cmocka_unit_test(test_score),   cmocka_unit_test(test_json),
+        cmocka_unit_test(test_grid),    cmocka_unit_test(test_figures_of_a_camera_at_rest),
+        cmocka_unit_test(test_merging),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
 }

@@ -12,7 +12,7 @@
 #include "report.h"
 #include "run.h"
 
-enum { MOST_BYTES = 1 << 16 };
+enum { MAX_BYTES = 1 << 16 };
 
 static struct grrl_run run;
 
@@ -39,12 +39,12 @@ static void print(FILE *nowhere)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static FILE *nowhere;
-    static uint8_t copy[MOST_BYTES];
+    static uint8_t copy[MAX_BYTES];
     struct grrl_tracks tracks;
     struct grrl_tracks_error error;
     struct grrl_rectify rectify;
     struct grrl_rectify_point point[GRRL_RECTIFY_POINTS];
-    if (size < 2 || size > MOST_BYTES)
+    if (size < 2 || size > MAX_BYTES)
         return 0;
     nowhere = nowhere == NULL ? fopen("/dev/null", "w") : nowhere;
     REQUIRE(nowhere != NULL);

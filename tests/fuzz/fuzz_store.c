@@ -9,7 +9,7 @@
 #include "grrl/learner/learner.h"
 #include "policy_memory.h"
 
-enum { CAPACITY = 24, MOST_BYTES = 32768, POINTS = 16, TURNS = 8 };
+enum { CAPACITY = 24, MAX_BYTES = 32768, POINTS = 16, TURNS = 8 };
 
 /* The layout of experience.h and case_base.h. */
 enum {
@@ -24,7 +24,7 @@ enum {
 };
 
 struct memory_file {
-    uint8_t bytes[MOST_BYTES];
+    uint8_t bytes[MAX_BYTES];
     size_t size;
     size_t at;
 };
@@ -189,7 +189,7 @@ enum { SIGN = 1, BY_PAPER = 2 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    if (size == 0 || size > MOST_BYTES)
+    if (size == 0 || size > MAX_BYTES)
         return 0;
     file.size = size - 1;
     file.at = 0;

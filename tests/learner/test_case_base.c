@@ -61,7 +61,7 @@ static void trust_always(void)
 static float estimate(const struct grrl_context *of)
 {
     struct grrl_estimate estimate;
-    grrl_cases_estimate(&f.base, &f.config, of, &estimate);
+    grrl_cases_estimate(&f.base, &f.config, grrl_context_key(of), &estimate);
     return estimate.value;
 }
 
@@ -70,7 +70,7 @@ static void nothing_known_is_worth_the_prior(void **state)
     (void)state;
     struct grrl_context a = context(0, 0);
     struct grrl_estimate estimate;
-    grrl_cases_estimate(&f.base, &f.config, &a, &estimate);
+    grrl_cases_estimate(&f.base, &f.config, grrl_context_key(&a), &estimate);
     assert_true(estimate.value == f.config.prior && estimate.weight == f.config.prior_weight);
     assert_true(estimate.lower == f.config.prior - f.config.bound);
     assert_true(estimate.upper == f.config.prior + f.config.bound);
@@ -101,14 +101,15 @@ static void an_estimate_is_the_weighted_mean_of_all_rewards(void **state)
             fewest = differ < fewest ? differ : fewest;
         }
         struct grrl_estimate estimate;
-        grrl_cases_estimate(&f.base, &f.config, &asked, &estimate);
+        grrl_cases_estimate(&f.base, &f.config, grrl_context_key(&asked), &estimate);
         assert_true(fabs((double)estimate.value - sum / weight) < 1e-4);
         assert_true(fabs((double)estimate.weight - weight) < 1e-3);
         if (n > 0)
             assert_int_equal(estimate.mismatches, fewest);
         met[n] = random_context();
         reward[n] = (float)grrl_random_below(&f.random, 4);
-        assert_true(grrl_cases_learn(&f.base, &f.config, &met[n], reward[n]) < f.base.n);
+        assert_true(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&met[n]), reward[n]) <
+                    f.base.n);
         grrl_cases_begin_trial(&f.base, &f.config); /* newer rewards would count more */
     }
     assert_true(f.base.n > 1 && f.base.evictions == 0);
@@ -119,7 +120,7 @@ static void parts_left_out_do_not_count(void **state)
     (void)state;
     struct grrl_context a = context(0, 0);
     struct grrl_context b = context(2, 0);
-    (void)grrl_cases_learn(&f.base, &f.config, &a, 3.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 3.0f);
     assert_true(estimate(&b) < estimate(&a));
     f.config.parts &= (uint16_t) ~(1u << GRRL_CONTEXT_DIRECTION);
     assert_true(estimate(&b) == estimate(&a));
@@ -131,11 +132,11 @@ static void the_latest_rewards_count(void **state)
     struct grrl_context a = context(0, 0);
     trust_always();
     for (int i = 0; i < 50; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 0.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
     float before = estimate(&a);
     for (int i = 0; i < 10; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, 2.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 2.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_true(before < 0.1f && estimate(&a) > 1.4f);
     assert_int_equal(f.base.cases[0].n, f.config.memory);
@@ -146,8 +147,8 @@ static void learn_an_object(const struct grrl_context *good, const struct grrl_c
 {
     for (int trial = 0; trial < 10; trial++) {
         grrl_cases_begin_trial(&f.base, &f.config);
-        (void)grrl_cases_learn(&f.base, &f.config, good, 3.0f);
-        (void)grrl_cases_learn(&f.base, &f.config, bad, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(good), 3.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(bad), 0.0f);
     }
     grrl_cases_begin_trial(&f.base, &f.config);
 }
@@ -162,14 +163,14 @@ static void refuted_expectations_weaken_older_rewards(void **state)
     f.config.general = 0.0f;
     learn_an_object(&good, &bad);
     struct grrl_context other = context(0, 4);
-    (void)grrl_cases_learn(&f.base, &f.config, &other, 2.0f);
-    (void)grrl_cases_learn(&f.base, &f.config, &other, 2.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&other), 2.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&other), 2.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
     float trusted = estimate(&good);
     float hoped = estimate(&other);
     assert_true(trusted > 2.0f && hoped > 1.0f && f.base.log_odds == f.config.confidence);
     for (int push = 0; push < 2; push++)
-        (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&good), 0.0f);
     assert_true(f.base.log_odds == -1.0f);
     assert_true(estimate(&good) < 0.9f && estimate(&other) < hoped - 0.2f);
     grrl_cases_begin_trial(&f.base, &f.config);
@@ -186,10 +187,10 @@ static void a_failure_without_doubt_weakens_nothing(void **state)
     struct grrl_context good = context(0, 0);
     struct grrl_context bad = context(2, 1);
     learn_an_object(&good, &bad);
-    (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&good), 0.0f);
     for (int push = 0; push < 4; push++) {
-        (void)grrl_cases_learn(&f.base, &f.config, &good, 3.0f);
-        (void)grrl_cases_learn(&f.base, &f.config, &bad, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&good), 3.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&bad), 0.0f);
     }
     assert_true(f.base.log_odds > 0.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
@@ -205,13 +206,15 @@ static void what_was_to_be_expected_raises_no_doubt(void **state)
     f.config.general = 0.0f;
     learn_an_object(&good, &bad);
     f.base.log_odds = 0.0f;
-    (void)grrl_cases_learn(&f.base, &f.config, &bad, 0.0f); /* a failure, as ever */
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&bad),
+                           0.0f); /* a failure, as ever */
     assert_true(f.base.log_odds > 0.0f);
     f.base.log_odds = 0.0f;
-    (void)grrl_cases_learn(&f.base, &f.config, &good, 1.0f); /* less than usual, but something */
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&good),
+                           1.0f); /* less than usual, but something */
     assert_true(f.base.log_odds > 0.0f);
     f.base.log_odds = 0.0f;
-    (void)grrl_cases_learn(&f.base, &f.config, &bad, 1.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&bad), 1.0f);
     assert_true(f.base.log_odds < 0.0f);
 }
 
@@ -221,7 +224,7 @@ static void nothing_known_can_not_be_doubted(void **state)
     grrl_cases_begin_trial(&f.base, &f.config);
     for (int push = 0; push < 50; push++) {
         struct grrl_context any = random_context();
-        (void)grrl_cases_learn(&f.base, &f.config, &any, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&any), 0.0f);
     }
     assert_true(f.base.log_odds == 0.0f);
 }
@@ -237,7 +240,7 @@ static void doubt_has_bounds(void **state)
     for (int push = 0; push < 200; push++) {
         struct grrl_context any = random_context();
         bool expected = grrl_random_below(&f.random, 2) == 0;
-        (void)grrl_cases_learn(&f.base, &f.config, push % 3 == 0 ? &any : &good,
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(push % 3 == 0 ? &any : &good),
                                expected ? 3.0f : 0.0f);
         least = f.base.log_odds < least ? f.base.log_odds : least;
         assert_true(f.base.log_odds >= -1.0f);
@@ -246,7 +249,7 @@ static void doubt_has_bounds(void **state)
     assert_true(least == -1.0f);
     trust_always();
     for (int push = 0; push < 100; push++)
-        (void)grrl_cases_learn(&f.base, &f.config, &good, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&good), 0.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_true(f.base.log_odds == f.config.confidence && f.base.cases[0].n_new == 0);
 }
@@ -257,7 +260,7 @@ static void newer_rewards_push_out_older_ones(void **state)
     struct grrl_context a = context(0, 0);
     trust_always();
     for (int i = 0; i < 4; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, 1.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 1.0f);
     assert_int_equal(f.base.cases[0].n, 0);
     assert_int_equal(f.base.cases[0].n_new, 4);
     grrl_cases_begin_trial(&f.base, &f.config);
@@ -265,7 +268,7 @@ static void newer_rewards_push_out_older_ones(void **state)
     assert_int_equal(f.base.cases[0].n, 4);
     assert_int_equal(f.base.cases[0].n_new, 0);
     for (int i = 0; i < 2; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, 6.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 6.0f);
     grrl_cases_begin_trial(&f.base, &f.config);
     assert_int_equal(f.base.cases[0].n, 5); /* three ones and two sixes */
     assert_true(fabsf(f.base.cases[0].value - 3.0f) < 1e-5f);
@@ -284,9 +287,9 @@ static void what_all_objects_share_outlives_doubt(void **state)
     f.base.log_odds = -1.0f;
     struct grrl_estimate with;
     struct grrl_estimate without;
-    grrl_cases_estimate(&f.base, &f.config, &good, &with);
+    grrl_cases_estimate(&f.base, &f.config, grrl_context_key(&good), &with);
     f.config.general = 0.0f;
-    grrl_cases_estimate(&f.base, &f.config, &good, &without);
+    grrl_cases_estimate(&f.base, &f.config, grrl_context_key(&good), &without);
     assert_true(with.value > without.value + 0.1f);
     assert_true(fabsf(with.weight - without.weight - 3.0f) < 1e-4f); /* and no more than that */
 }
@@ -296,11 +299,11 @@ static void counts_of_a_full_case_are_halved(void **state)
     (void)state;
     struct grrl_context a = context(0, 0);
     for (int i = 0; i < GRRL_CASE_REWARDS; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, i % 5 == 0 ? 2.0f : 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), i % 5 == 0 ? 2.0f : 0.0f);
     assert_int_equal(f.base.cases[0].n_all, GRRL_CASE_REWARDS);
     assert_int_equal(f.base.cases[0].n_found, GRRL_CASE_REWARDS / 5);
     assert_true(fabsf(f.base.cases[0].value_all - 0.4f) < 1e-4f);
-    (void)grrl_cases_learn(&f.base, &f.config, &a, 2.0f);
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 2.0f);
     assert_int_equal(f.base.cases[0].n_all, GRRL_CASE_REWARDS / 2 + 1);
     assert_int_equal(f.base.cases[0].n_found, GRRL_CASE_REWARDS / 10 + 1);
 }
@@ -311,7 +314,7 @@ static void live(struct grrl_case_base *base, struct grrl_case *cases, unsigned 
     grrl_cases_init(base, cases, CAPACITY);
     for (unsigned i = 0; i < n; i++) {
         struct grrl_context any = random_context();
-        (void)grrl_cases_learn(base, &f.config, &any, (float)(i % 3));
+        (void)grrl_cases_learn(base, &f.config, grrl_context_key(&any), (float)(i % 3));
     }
 }
 
@@ -348,13 +351,33 @@ static void merged_rewards_are_pooled(void **state)
     struct grrl_context a = context(0, 0);
     grrl_cases_init(&other, cases, CAPACITY);
     for (int i = 0; i < 3; i++)
-        (void)grrl_cases_learn(&f.base, &f.config, &a, 2.0f);
-    (void)grrl_cases_learn(&other, &f.config, &a, 0.0f);
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 2.0f);
+    (void)grrl_cases_learn(&other, &f.config, grrl_context_key(&a), 0.0f);
     assert_int_equal(grrl_cases_merge(&f.base, &other, &f.config, CAPACITY), GRRL_OK);
     assert_int_equal(f.base.n, 1);
     assert_int_equal(f.base.cases[0].n_all, 4);
     assert_int_equal(f.base.cases[0].n_found, 3);
     assert_true(fabsf(f.base.cases[0].value_all - 1.5f) < 1e-6f);
+}
+
+static void the_best_founded_cases_outlive_a_merge(void **state)
+{
+    (void)state;
+    static struct grrl_case cases[CAPACITY];
+    struct grrl_case_base other;
+    struct grrl_context often = context(0, 0);
+    struct grrl_context once = context(2, 0);
+    grrl_cases_init(&other, cases, CAPACITY);
+    for (int i = 0; i < 3; i++)
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&often), 2.0f);
+    for (int i = 0; i < 9; i++) { /* met later, each push in a context of its own */
+        once.part[GRRL_CONTEXT_NEIGHBOUR_LENGTH] = (uint8_t)(i % 5);
+        once.part[GRRL_CONTEXT_ASPECT] = (uint8_t)(i / 5);
+        (void)grrl_cases_learn(&other, &f.config, grrl_context_key(&once), 0.0f);
+    }
+    assert_int_equal(grrl_cases_merge(&f.base, &other, &f.config, 2), GRRL_OK);
+    assert_int_equal(f.base.n, 2);
+    assert_int_equal(f.base.cases[0].n_all + f.base.cases[1].n_all, 4);
 }
 
 static void the_case_not_met_for_the_longest_time_makes_room(void **state)
@@ -364,16 +387,17 @@ static void the_case_not_met_for_the_longest_time_makes_room(void **state)
     struct grrl_context b = context(1, 0);
     struct grrl_context c = context(2, 0);
     grrl_cases_init(&f.base, f.cases, 2);
-    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), 0);
-    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &b, 1.0f), 1);
-    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), 0);
-    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &c, 1.0f), 1);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 1.0f), 0);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&b), 1.0f), 1);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 1.0f), 0);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&c), 1.0f), 1);
     assert_int_equal(f.base.n, 2);
     assert_int_equal(f.base.evictions, 1);
     assert_int_equal(f.base.high_water, 2);
     assert_int_equal(f.base.cases[1].key, grrl_context_key(&c));
     grrl_cases_init(&f.base, NULL, 0);
-    assert_int_equal(grrl_cases_learn(&f.base, &f.config, &a, 1.0f), GRRL_NO_CASE);
+    assert_int_equal(grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 1.0f),
+                     GRRL_NO_CASE);
     assert_true(estimate(&a) == f.config.prior);
 }
 
@@ -405,7 +429,7 @@ static void save_some(void)
 {
     for (int i = 0; i < 12; i++) {
         struct grrl_context a = random_context();
-        (void)grrl_cases_learn(&f.base, &f.config, &a, (float)(i % 3));
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), (float)(i % 3));
         if (i == 6)
             grrl_cases_begin_trial(&f.base, &f.config);
     }
@@ -506,6 +530,7 @@ int main(void)
         cmocka_unit_test_setup(counts_of_a_full_case_are_halved, set_up),
         cmocka_unit_test_setup(two_lives_merge_in_either_order, set_up),
         cmocka_unit_test_setup(merged_rewards_are_pooled, set_up),
+        cmocka_unit_test_setup(the_best_founded_cases_outlive_a_merge, set_up),
         cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),
         cmocka_unit_test_setup(cases_come_back_from_a_file, set_up),

@@ -203,6 +203,15 @@ expect 0 'm apart: pixels or millimetres' "$WORK/wide.csv"
 printf 'frame,point,x,y\n0,1,0,0\n0,2,1,0\n0,3,2,0\n1,1,0,0\n1,2,1,0\n1,3,2,1\n' >"$WORK/three.csv"
 expect 0 'warning: 3 tracks: a link needs at least 4 points' "$WORK/three.csv"
 
+# more noise than assumed is told, unless the user set or measured it
+awk -F, -v OFS=, 'BEGIN { srand(6) } NR > 1 { $3 += 0.006 * (rand() - 0.5); $4 += 0.006 * (rand() - 0.5) } 1' \
+    "$WORK/hinge.csv" >"$WORK/noisy.csv"
+expect 0 'warning: the points scatter by 0.001[5-9] m from frame to frame, but 0.0007 is assumed' "$WORK/noisy.csv"
+for quiet in "$WORK/hinge.csv" "--noise auto $WORK/noisy.csv" "--noise 0.001 $WORK/noisy.csv"; do
+    # shellcheck disable=SC2086
+    "$PERCEIVE" $quiet 2>&1 | grep -q 'scatter by' && wrong "the noise is doubted: $quiet"
+done
+
 # a noise that cannot be measured
 printf 'frame,point,x,y\n0,1,0,0\n1,1,0,0\n2,1,1,0\n' >"$WORK/short.csv"
 expect 1 'auto: too few points' --noise auto "$WORK/short.csv"

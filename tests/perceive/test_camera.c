@@ -210,6 +210,51 @@ static void little_to_see_is_left_alone(void **state)
     grrl_tracks_free(&tracks);
 }
 
+/* A hinge with few points at random places: `still` at rest, `moving` turn about the origin. */
+static struct grrl_tracks make_hinge(unsigned still, unsigned moving, uint64_t seed)
+{
+    struct grrl_random random;
+    grrl_random_init(&random, seed, 0);
+    struct grrl_tracks tracks = make((struct plan){.radius = 0.0f});
+    float place[POINTS][2];
+    for (unsigned i = 0; i < still + moving; i++) {
+        place[i][0] = (i < still ? -0.2f : 0.2f) * grrl_random_uniform(&random);
+        place[i][1] = 0.04f * (grrl_random_uniform(&random) - 0.5f);
+    }
+    tracks.n_points = 0;
+    for (unsigned f = 0; f < FRAMES; f++) {
+        tracks.frame[f].first = tracks.n_points;
+        tracks.frame[f].n = still + moving;
+        for (unsigned i = 0; i < still + moving; i++) {
+            float turn = i < still ? 0.1f : 0.4f + 1.05f * (float)f / (FRAMES - 1);
+            size_t at = tracks.n_points++;
+            tracks.id[at] = (int32_t)i;
+            tracks.x[at] = cosf(turn) * place[i][0] - sinf(turn) * place[i][1] +
+                           noise_m * 3.4f * (grrl_random_uniform(&random) - 0.5f);
+            tracks.y[at] = sinf(turn) * place[i][0] + cosf(turn) * place[i][1] +
+                           noise_m * 3.4f * (grrl_random_uniform(&random) - 0.5f);
+        }
+    }
+    return tracks;
+}
+
+/* With few points most pairs have one on each body: their distances say nothing about the camera.
+ */
+static void a_few_points_do_not_reveal_the_camera(void **state)
+{
+    (void)state;
+    static const unsigned counts[][2] = {{3, 3}, {5, 5}, {14, 3}, {12, 12}};
+    for (unsigned i = 0; i < 4 * 20; i++) {
+        struct grrl_camera camera;
+        struct grrl_tracks tracks = make_hinge(counts[i / 20][0], counts[i / 20][1], i);
+        assert_true(grrl_camera_undo(&tracks, 2.0f * noise_m, &camera));
+        if (camera.zoomed || camera.tilted)
+            fail_msg("%u and %u points, seed %u: zoom %g, tilt %g", counts[i / 20][0],
+                     counts[i / 20][1], i, (double)camera.zoom, (double)camera.tilt_rad);
+        grrl_tracks_free(&tracks);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +263,7 @@ int main(void)
         cmocka_unit_test(nothing_else_is_undone),
         cmocka_unit_test(the_answer_is_in_the_picture),
         cmocka_unit_test(little_to_see_is_left_alone),
+        cmocka_unit_test(a_few_points_do_not_reveal_the_camera),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,14 +15,14 @@
 
 #include "grrl/base/random.h"
 
-enum { FRAMES = 60, MOST_POINTS = 400 };
+enum { FRAMES = 60, MAX_POINTS = 400 };
 
 /* A recording under construction: every point in every frame, unless it is taken away. */
 struct scene {
     unsigned n_points;
-    float x[FRAMES][MOST_POINTS];
-    float y[FRAMES][MOST_POINTS];
-    bool absent[FRAMES][MOST_POINTS];
+    float x[FRAMES][MAX_POINTS];
+    float y[FRAMES][MAX_POINTS];
+    bool absent[FRAMES][MAX_POINTS];
 };
 
 static struct scene scene;
@@ -183,26 +183,26 @@ static void test_not_frozen(void **state)
 static void test_choose(void **state)
 {
     (void)state;
-    make(MOST_POINTS, 0.5f, 0.0f);
-    for (unsigned i = 0; i < MOST_POINTS; i++) /* a grid of 20 x 20, the upper half sees half */
+    make(MAX_POINTS, 0.5f, 0.0f);
+    for (unsigned i = 0; i < MAX_POINTS; i++) /* a grid of 20 x 20, the upper half sees half */
         for (unsigned f = 0; f < FRAMES; f++) {
             put(i, f, f + 1, (float)(i % 20), (float)(i / 20));
-            scene.absent[f][i] = i >= MOST_POINTS / 2 && (f < 10 || f >= 45);
+            scene.absent[f][i] = i >= MAX_POINTS / 2 && (f < 10 || f >= 45);
             scene.absent[f][i] = i % 4 == 1 ? f > 9 : scene.absent[f][i];
         }
     struct grrl_tracks tracks = tracks_of_scene();
     size_t before = tracks.n_points;
     assert_true(grrl_tracks_choose(&tracks, 100));
     assert_int_equal(grrl_tracks_count_ids(&tracks), 100);
-    assert_int_equal(tracks.left_out.n, MOST_POINTS - 100);
+    assert_int_equal(tracks.left_out.n, MAX_POINTS - 100);
     assert_int_equal(tracks.n_points + tracks.left_out.n_points, before);
     unsigned blocks[25] = {0}; /* of 4 x 4 */
-    bool left[MOST_POINTS] = {false};
+    bool left[MAX_POINTS] = {false};
     for (size_t i = 0; i < tracks.left_out.n; i++) {
         assert_true(i == 0 || tracks.left_out.id[i] > tracks.left_out.id[i - 1]);
         left[tracks.left_out.id[i]] = true;
     }
-    for (unsigned i = 0; i < MOST_POINTS; i++) {
+    for (unsigned i = 0; i < MAX_POINTS; i++) {
         blocks[i / 80 * 5 + i % 20 / 4] += !left[i];
         assert_true(left[i] || i % 4 != 1); /* the short ones are out */
     }
@@ -210,7 +210,7 @@ static void test_choose(void **state)
         assert_in_range(blocks[i], 2, 6); /* 4 would be even */
     grrl_tracks_free(&tracks);
     tracks = tracks_of_scene();
-    assert_true(grrl_tracks_choose(&tracks, MOST_POINTS));
+    assert_true(grrl_tracks_choose(&tracks, MAX_POINTS));
     assert_int_equal(tracks.left_out.n, 0);
     assert_int_equal(tracks.n_points, before);
     grrl_tracks_free(&tracks);

@@ -15,7 +15,7 @@
 
 #include "grrl/base/random.h"
 
-enum { POINTS = 24, MOST_FRAMES = 60 };
+enum { POINTS = 24, MAX_FRAMES = 60 };
 
 /* Half of the points rest, half move along x by `step` a frame; every point has a new id after
  * `life` frames, at a time of its own, and is `gap` frames late with it. */
@@ -73,7 +73,7 @@ static void a_slow_recording_changes_nothing(void **state)
     struct grrl_perception_config before;
     grrl_perception_config_default(&before);
     struct grrl_perception_config after =
-        configured((struct plan){MOST_FRAMES, 0.002f, 0.001f, 1000, 0});
+        configured((struct plan){MAX_FRAMES, 0.002f, 0.001f, 1000, 0});
     assert_memory_equal(&before, &after, sizeof before);
 }
 
@@ -91,7 +91,7 @@ static void short_tracks_need_short_windows(void **state)
 {
     (void)state;
     struct grrl_perception_config config =
-        configured((struct plan){MOST_FRAMES, 0.002f, 0.001f, 8, 0});
+        configured((struct plan){MAX_FRAMES, 0.002f, 0.001f, 8, 0});
     assert_int_equal(config.push_frames, 1);
     assert_true(config.jump_m == 0.015f);
 }
@@ -109,7 +109,7 @@ static void renewed_ids_become_one_track(void **state)
 {
     (void)state;
     for (unsigned gap = 0; gap < 3; gap++) {
-        struct grrl_tracks tracks = make((struct plan){MOST_FRAMES, 0.002f, 0.001f, 15, gap});
+        struct grrl_tracks tracks = make((struct plan){MAX_FRAMES, 0.002f, 0.001f, 15, gap});
         size_t before = grrl_tracks_count_ids(&tracks);
         assert_true(before > 4 * POINTS);
         assert_true(grrl_tracks_join_renewed(&tracks, 0.0007f));
@@ -123,8 +123,8 @@ static void renewed_ids_become_one_track(void **state)
 static void other_tracks_stay(void **state)
 {
     (void)state;
-    const struct plan plans[] = {{MOST_FRAMES, 0.002f, 0.001f, 15, 5},
-                                 {MOST_FRAMES, 0.002f, 0.001f, 1000, 0},
+    const struct plan plans[] = {{MAX_FRAMES, 0.002f, 0.001f, 15, 5},
+                                 {MAX_FRAMES, 0.002f, 0.001f, 1000, 0},
                                  {1, 0.002f, 0.001f, 1000, 0}};
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
         struct grrl_tracks tracks = make(plans[i]);
@@ -152,6 +152,75 @@ static void an_open_choice_is_none(void **state)
     assert_int_equal(id[4], 3);
 }
 
+/* --- a link of two points ----------------------------------------------------------------------
+ */
+
+enum { STILL = 6 };
+
+/* Points at rest, and `movers` that move by a tenth in each of 11 frames; one in three frames
+ * misses the first point. */
+struct few {
+    int32_t id[11 * 16];
+    float x[11 * 16];
+    float y[11 * 16];
+    struct grrl_tracks_frame frame[11];
+    struct grrl_tracks tracks;
+};
+
+static void make_few(struct few *few, unsigned movers)
+{
+    memset(few, 0, sizeof *few);
+    few->tracks = (struct grrl_tracks){
+        .id = few->id, .x = few->x, .y = few->y, .frame = few->frame, .n_frames = 11};
+    for (unsigned f = 0; f < 11; f++) {
+        few->frame[f] = (struct grrl_tracks_frame){.first = few->tracks.n_points, .pushing = true};
+        for (unsigned i = f % 3 == 2 ? 1 : 0; i < STILL + movers; i++) {
+            size_t at = few->tracks.n_points++;
+            few->id[at] = (int32_t)(3 * i);
+            few->x[at] = 0.2f * (float)i + (i >= STILL ? 0.1f * (float)f : 0.0f);
+            few->frame[f].n++;
+        }
+    }
+}
+
+static unsigned count_stops(const struct few *few)
+{
+    unsigned stops = 0;
+    for (unsigned f = 0; f < 11; f++)
+        stops += few->frame[f].pushing ? 0u : 1u;
+    return stops;
+}
+
+static void frames_in_which_two_points_moved_count_as_rest(void **state)
+{
+    (void)state;
+    static struct few few;
+    make_few(&few, 2);
+    assert_true(grrl_pace_stop_for_two(&few.tracks, 0.25f, 1));
+    assert_int_equal(count_stops(&few), 3); /* by 0.3: frames 3, 6 and 9 */
+    assert_false(few.frame[3].pushing || few.frame[6].pushing || few.frame[9].pushing);
+}
+
+static void other_frames_stay_pushes(void **state)
+{
+    (void)state;
+    static const struct {
+        unsigned movers;
+        float distance;
+        unsigned keyframes;
+    } cases[] = {{1, 0.25f, 1},  /* a single point is an outlier */
+                 {2, 0.25f, 2},  /* not twice as many stops as keyframes */
+                 {2, 0.05f, 5},  /* keyframes enough */
+                 {2, 1.05f, 1},  /* nothing moved so far */
+                 {0, 0.25f, 2}}; /* nothing moved at all */
+    static struct few few;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        make_few(&few, cases[i].movers);
+        assert_false(grrl_pace_stop_for_two(&few.tracks, cases[i].distance, cases[i].keyframes));
+        assert_int_equal(count_stops(&few), 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -161,6 +230,8 @@ int main(void)
         cmocka_unit_test(renewed_ids_become_one_track),
         cmocka_unit_test(other_tracks_stay),
         cmocka_unit_test(an_open_choice_is_none),
+        cmocka_unit_test(frames_in_which_two_points_moved_count_as_rest),
+        cmocka_unit_test(other_frames_stay_pushes),
     };
     return cmocka_run_group_tests_name("pace", tests, NULL, NULL);
 }

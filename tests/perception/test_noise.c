@@ -133,9 +133,9 @@ static void more_points_than_fit_and_wrong_ones_are_left_out(void **state)
 /* --- against all differences, one by one
  * ------------------------------------------------------------ */
 
-enum { IDS = 12, MOST_DIFFERENCES = 20000 };
+enum { IDS = 12, MAX_DIFFERENCES = 20000 };
 
-static double difference[MOST_DIFFERENCES];
+static double difference[MAX_DIFFERENCES];
 static int n_differences;
 
 /* Sixteen equal steps from a power of two to the next, from 2^-24 m on. */

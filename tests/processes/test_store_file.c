@@ -92,7 +92,7 @@ static void learn(struct memory *memory, int from, int to)
         for (int part = 0; part < GRRL_CONTEXT_PARTS; part++)
             context.part[part] = (uint8_t)grrl_random_below(&random, grrl_context_max[part] + 1u);
         struct grrl_learn_policy *policy = &memory->policy.learn;
-        (void)grrl_cases_learn(&policy->cases, &policy->config, &context, 1.0f);
+        (void)grrl_cases_learn(&policy->cases, &policy->config, grrl_context_key(&context), 1.0f);
     }
 }
 
@@ -142,7 +142,8 @@ static void check_fate(const struct disk_fate *fate, struct tally *tally)
     static struct disk_content loaded;
     disk_reboot(&disk, fate, &after);
     tally->cuts++;
-    bool whole = load(&after) == GRRL_STORE_LOADED;
+    enum grrl_store_result result = load(&after);
+    bool whole = result == GRRL_STORE_LOADED || result == GRRL_STORE_NEW;
     content_of(&target.learner, &loaded);
     if (whole && same(&loaded, &old_bytes))
         tally->old++;
@@ -441,9 +442,36 @@ static void no_file_is_no_experience(void **state)
 {
     (void)state;
     disk_init(&disk);
-    assert_int_equal(load(&disk), GRRL_STORE_LOADED);
+    assert_int_equal(load(&disk), GRRL_STORE_NEW);
     assert_string_equal(report.text, "");
     assert_int_equal(grrl_learner_usage(&target.learner).n, 0);
+}
+
+/* What a new store starts with is used whole or not at all, and stays as it is. */
+static void a_store_to_start_from_stays_as_it_is(void **state)
+{
+    (void)state;
+    static struct disk_content loaded;
+    const struct grrl_file_calls calls = disk_calls(&disk);
+    for (size_t size = 0; size <= new_bytes.size; size++) {
+        static struct disk_content cut;
+        cut = new_bytes;
+        cut.size = size;
+        disk_init(&disk);
+        disk_put(&disk, PATH, &cut);
+        bool whole = size == new_bytes.size;
+        assert_int_equal(grrl_store_file_copy(&calls, PATH, &target.learner, &report), whole);
+        assert_int_equal(strlen(report.text) == 0, whole);
+        assert_string_equal(name_of(&disk, &cut), PATH);
+        if (whole)
+            content_of(&target.learner, &loaded);
+        else
+            assert_int_equal(grrl_learner_usage(&target.learner).n, 0);
+    }
+    assert_true(same(&loaded, &new_bytes));
+    disk_init(&disk);
+    assert_false(grrl_store_file_copy(&calls, PATH, &target.learner, &report));
+    assert_non_null(strstr(report.text, PATH));
 }
 
 int main(void)
@@ -457,6 +485,7 @@ int main(void)
         cmocka_unit_test_setup(a_torn_end_is_cut_and_counted, set_up),
         cmocka_unit_test_setup(any_damaged_byte_is_told_and_set_aside, set_up),
         cmocka_unit_test_setup(bytes_behind_the_end_are_damage, set_up),
+        cmocka_unit_test_setup(a_store_to_start_from_stays_as_it_is, set_up),
         cmocka_unit_test_setup(a_cut_while_setting_aside_loses_nothing, set_up),
         cmocka_unit_test_setup(what_cannot_be_set_aside_is_left_and_told, set_up),
         cmocka_unit_test_setup(no_file_is_no_experience, set_up),

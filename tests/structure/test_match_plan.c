@@ -157,6 +157,25 @@ static void test_growing_counts(void **state)
     }
 }
 
+static void test_degrees(void **state)
+{
+    (void)state;
+    struct grrl_random random = support_random("degrees");
+    for (int i = 0; i < 500; i++) {
+        struct grrl_graph graph = random_graph(&random);
+        struct grrl_match_plan plan;
+        grrl_match_plan_of(&plan, &graph, GRRL_ALL_PROPERTIES);
+        for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
+            for (unsigned k = 0; k < GRRL_MATCH_DEGREES; k++) {
+                uint32_t expected = 0;
+                for (uint8_t v = 0; v < graph.n; v++)
+                    expected |= (uint32_t)(joints_at(&graph, v, type) >= k) << v;
+                assert_int_equal(plan.at_least[type][k], expected);
+            }
+        }
+    }
+}
+
 /* Each vertex once, with what the search wants to know of its earlier neighbours. */
 static void assert_steps(const struct grrl_graph *graph, const struct grrl_match_plan *plan)
 {
@@ -291,8 +310,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_colours),        cmocka_unit_test(test_hash),
-        cmocka_unit_test(test_growing_counts), cmocka_unit_test(test_order),
-        cmocka_unit_test(test_order_from),     cmocka_unit_test(test_order_partly),
+        cmocka_unit_test(test_growing_counts), cmocka_unit_test(test_degrees),
+        cmocka_unit_test(test_order),          cmocka_unit_test(test_order_from),
+        cmocka_unit_test(test_order_partly),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

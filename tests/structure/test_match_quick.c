@@ -12,22 +12,22 @@ static struct grrl_graph random_graph(struct grrl_random *random, uint32_t n_ato
     return support_graph(random, n, 5 + grrl_random_below(random, 4), loops, n_atoms);
 }
 
-/* Of each type of joint: one to a vertex labelled like the reference, one to another, two. */
+/* Of each type of joint: one to a vertex labelled like the reference, one at all, two. */
 static void look_at(const struct grrl_graph *graph, grrl_label reference, uint8_t vertex,
                     bool *look)
 {
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
         unsigned n_alike = 0;
-        unsigned n_others = 0;
+        unsigned n_any = 0;
         for (uint8_t i = 0; i < graph->n; i++) {
             if (i == vertex || grrl_graph_joint(graph, vertex, i) != type)
                 continue;
             n_alike += graph->label[i] == reference;
-            n_others += graph->label[i] != reference;
+            n_any++;
         }
         look[3 * type] = n_alike > 0;
-        look[3 * type + 1] = n_others > 0;
-        look[3 * type + 2] = n_alike + n_others > 1;
+        look[3 * type + 1] = n_any > 0;
+        look[3 * type + 2] = n_any > 1;
     }
 }
 

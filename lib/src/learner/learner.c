@@ -232,10 +232,6 @@ enum grrl_status grrl_learner_load(struct grrl_learner *learner, const struct gr
 enum grrl_status grrl_learner_term(const struct grrl_learner *learner,
                                    struct grrl_term_store *store, grrl_term *term)
 {
-    const struct grrl_model *model = grrl_perception_model(&learner->perception);
-    struct grrl_graph graph;
-    struct grrl_name names[GRRL_MAX_LINKS];
-    struct grrl_edge edges[GRRL_MAX_JOINTS];
-    grrl_relational_state_of(model, learner->config.large_m, &graph, names, edges);
-    return grrl_graph_to_term(store, &graph, names, edges, model->n_joints, true, term);
+    return grrl_relational_term_of(grrl_perception_model(&learner->perception),
+                                   learner->config.large_m, store, term);
 }

@@ -27,3 +27,13 @@ void grrl_relational_state_of(const struct grrl_model *model, float large_m,
             edges[i] = (struct grrl_edge){joint->a, joint->b, joint->type};
     }
 }
+
+enum grrl_status grrl_relational_term_of(const struct grrl_model *model, float large_m,
+                                         struct grrl_term_store *store, grrl_term *term)
+{
+    struct grrl_graph graph;
+    struct grrl_name names[GRRL_MAX_LINKS];
+    struct grrl_edge edges[GRRL_MAX_JOINTS];
+    grrl_relational_state_of(model, large_m, &graph, names, edges);
+    return grrl_graph_to_term(store, &graph, names, edges, model->n_joints, true, term);
+}

@@ -13,55 +13,45 @@
 /* Share of min_slide_m from keyframe to keyframe: less does not count as sliding during a turn. */
 #define STEP_SHARE 0.5f
 
-/* Limit on the evidence from a common turn, as in joints.c, and the evidence from each further
- * stroke. */
-#define TURN_EVIDENCE_MAX 30.0f
-#define PUSH_EVIDENCE 4.0f
+/* Limit on the evidence from one return: of a hundred things that move by themselves, one goes back
+ * and forth on a line (2 ln 100). */
+#define RETURN_EVIDENCE_MAX 9.0f
+
+static float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static float absolute(float x)
+{
+    return x < 0.0f ? -x : x;
+}
 
 /* The body that reveals the camera's own motion: the widest, if it is wide enough to lie behind a
  * and b rather than beside them. GRRL_MAX_LINKS: there is none. */
 static uint8_t background_of(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    uint8_t widest = 0;
-    for (uint8_t c = 1; c < p->n_bodies; c++)
-        if (grrl_joint_half_extent(p, c) > grrl_joint_half_extent(p, widest))
-            widest = c;
-    float width = grrl_joint_half_extent(p, widest);
-    bool is_wide = width > WIDE * grrl_joint_half_extent(p, a) &&
-                   width > WIDE * grrl_joint_half_extent(p, b); /* neither of them */
-    return is_wide ? widest : GRRL_MAX_LINKS;
+    float widest = WIDE * larger(grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b));
+    uint8_t background = GRRL_MAX_LINKS;
+    for (uint8_t c = 0; c < p->n_bodies; c++) {
+        float width = grrl_joint_half_extent(p, c);
+        if (width > widest) {
+            widest = width;
+            background = c;
+        }
+    }
+    return background;
 }
 
 /* b as seen from a. */
 static struct grrl_pose turn_from(const struct grrl_pose *a, const struct grrl_pose *b)
 {
     return (struct grrl_pose){.c = a->c * b->c + a->s * b->s, .s = a->c * b->s - a->s * b->c};
-}
-
-static float least_step2(const struct grrl_perception *p)
-{
-    float step = STEP_SHARE * p->config.min_slide_m;
-    return step * step;
-}
-
-static float smaller(float a, float b)
-{
-    return a * a < b * b ? a : b;
-}
-
-/* How far both bodies of a pair turned while sliding. */
-struct turns {
-    float in_picture[2];
-    float on_ground[2];
-    float variance; /* the largest */
-};
-
-static void add_turns(struct turns *turns, const struct grrl_perception_pose *from,
-                      const struct grrl_perception_pose *to, const struct grrl_pose *ground, int of)
-{
-    struct grrl_pose turn = turn_from(&from->pose, &to->pose);
-    turns->in_picture[of] += turn.s;
-    turns->on_ground[of] += ground->c * turn.s - ground->s * turn.c;
 }
 
 /* Variance of a body's turn in a keyframe: noise, model error and bending (see joints.c). */
@@ -75,16 +65,9 @@ static float turn_variance(const struct grrl_perception *p, uint8_t k, uint8_t b
 }
 
 /* Position of b along the sliding axis, in the frame of a. */
-static float slid(const struct grrl_perception *p, uint8_t k, const struct grrl_joint_evidence *e)
+static float slid(const struct grrl_perception_pose *poses, const struct grrl_joint_evidence *e)
 {
-    struct grrl_vec2 d = grrl_origin_in(&p->pose[k][e->a], &p->pose[k][e->b]);
-    return grrl_vec2_dot(d, e->fit.axis_in_a);
-}
-
-static bool sees_both(const struct grrl_perception *p, uint8_t k,
-                      const struct grrl_joint_evidence *e)
-{
-    return p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
+    return grrl_vec2_dot(grrl_origin_in(&poses[e->a], &poses[e->b]), e->fit.axis_in_a);
 }
 
 /*
@@ -98,64 +81,85 @@ static float turn_while_sliding(const struct grrl_perception *p,
                                 const struct grrl_joint_evidence *e)
 {
     uint8_t ground = background_of(p, e->a, e->b);
-    struct turns turns = {.variance = 0.0f};
-    uint8_t last = GRRL_MAX_KEYFRAMES;
-    float most2 = 0.0f;
+    float least_step = STEP_SHARE * p->config.min_slide_m;
+    float in_picture[2] = {0.0f, 0.0f};
+    float on_ground[2] = {0.0f, 0.0f};
+    const struct grrl_perception_pose *before = NULL;
+    float at_before = 0.0f;
+    float most = 0.0f;
+    float most_variance = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes && ground < GRRL_MAX_LINKS; k++) {
         const struct grrl_perception_pose *now = p->pose[k];
-        if (!sees_both(p, k, e) || !(now[ground].weight > 0.0f))
+        if (!grrl_perception_sees_both(p, k, e->a, e->b) || !(now[ground].weight > 0.0f))
             continue;
-        float step = last < GRRL_MAX_KEYFRAMES ? slid(p, k, e) - slid(p, last, e) : 0.0f;
-        if (step * step > least_step2(p)) {
-            const struct grrl_perception_pose *before = p->pose[last];
+        float at = slid(now, e);
+        if (before != NULL && absolute(at - at_before) > least_step) {
             struct grrl_pose moved = turn_from(&before[ground].pose, &now[ground].pose);
-            add_turns(&turns, &before[e->a], &now[e->a], &moved, 0);
-            add_turns(&turns, &before[e->b], &now[e->b], &moved, 1);
-            float v = turn_variance(p, k, e->a) + turn_variance(p, k, e->b);
-            turns.variance = v > turns.variance ? v : turns.variance;
-            float turned = smaller(smaller(turns.in_picture[0], turns.in_picture[1]),
-                                   smaller(turns.on_ground[0], turns.on_ground[1]));
-            most2 = turned * turned > most2 ? turned * turned : most2;
+            float variance = 0.0f;
+            float least = GRRL_PI;
+            for (int i = 0; i < 2; i++) {
+                uint8_t body = i == 0 ? e->a : e->b;
+                struct grrl_pose turn = turn_from(&before[body].pose, &now[body].pose);
+                in_picture[i] += turn.s;
+                on_ground[i] += moved.c * turn.s - moved.s * turn.c;
+                least = smaller(least, smaller(absolute(in_picture[i]), absolute(on_ground[i])));
+                variance += turn_variance(p, k, body);
+            }
+            most = larger(most, least);
+            most_variance = larger(most_variance, variance);
         }
-        last = k;
+        before = now;
+        at_before = at;
     }
-    return turns.variance > 0.0f ? most2 / turns.variance : 0.0f;
+    return most_variance > 0.0f ? most * most / most_variance : 0.0f;
 }
 
-/* Strokes of a slide, back and forth: independent things do not return the same way. */
-static float count_strokes(const struct grrl_perception *p, const struct grrl_joint_evidence *e)
+/*
+ * Evidence, in chi squared, from a slide that comes back along its line over this distance. A thing
+ * on its own may leave in any direction, with a density of 1 / (2 pi). On the line, the direction
+ * has the standard error s, a density of 1 / (sqrt(2 pi) s). Both ends of both strokes scatter
+ * across the line by `variance`, so s^2 = 4 variance / distance^2.
+ */
+static float return_evidence(float distance, float variance)
 {
-    float low = 0.0f; /* since the last turning point */
-    float high = 0.0f;
-    float direction = 0.0f;
-    float strokes = 0.0f;
-    float first = 0.0f;
+    float evidence = grrl_log(0.5f * GRRL_PI * distance * distance / variance);
+    return smaller(larger(evidence, 0.0f), RETURN_EVIDENCE_MAX);
+}
+
+/* Adds up the evidence of all returns. A return counts over the shorter of its stroke and the one
+ * before. */
+static float evidence_of_returns(const struct grrl_perception *p,
+                                 const struct grrl_joint_evidence *e, float variance)
+{
+    float before = 0.0f; /* length of the last stroke */
+    float from = 0.0f;   /* the present one */
+    float to = 0.0f;
+    float sum = 0.0f;
     bool begun = false;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        if (!sees_both(p, k, e))
+        if (!grrl_perception_sees_both(p, k, e->a, e->b))
             continue;
-        first = begun ? first : slid(p, k, e);
+        float at = slid(p->pose[k], e);
+        if (!begun)
+            from = to = at;
         begun = true;
-        float at = slid(p, k, e) - first;
-        high = at > high ? at : high;
-        low = at < low ? at : low;
-        bool forth = direction <= 0.0f && at - low > p->config.min_slide_m;
-        bool back = direction >= 0.0f && high - at > p->config.min_slide_m;
-        if (forth || back) {
-            direction = forth ? 1.0f : -1.0f;
-            high = at;
-            low = at;
-            strokes += 1.0f;
+        if ((at - to) * (to - from) >= 0.0f) {
+            to = at;
+        } else if (absolute(at - to) > p->config.min_slide_m) {
+            float stroke = absolute(to - from);
+            sum += return_evidence(smaller(before, stroke), variance);
+            before = stroke;
+            from = to;
+            to = at;
         }
     }
-    return strokes;
+    float stroke = absolute(to - from);
+    return sum + return_evidence(smaller(before, stroke), variance);
 }
 
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
-                                   const struct grrl_joint_evidence *e)
+                                   const struct grrl_joint_evidence *e, float variance)
 {
-    float turned = turn_while_sliding(p, e);
-    float strokes = count_strokes(p, e) - 1.0f;
-    turned = turned < TURN_EVIDENCE_MAX ? turned : TURN_EVIDENCE_MAX;
-    return turned + (strokes > 0.0f ? PUSH_EVIDENCE * strokes : 0.0f);
+    return smaller(turn_while_sliding(p, e), GRRL_TURN_EVIDENCE_MAX) +
+           evidence_of_returns(p, e, variance);
 }

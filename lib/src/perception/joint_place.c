@@ -106,17 +106,17 @@ static bool lies_between(const struct grrl_perception *p, const struct grrl_join
 static bool is_pivot_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                           float support)
 {
-    float gap = p->config.gap_m;
+    bool table = p->config.static_background;
+    float gap = table ? p->config.gap_m : 0.0f;
+    float share = table ? FAR_ON_TABLE : FAR_BODY;
     float da = distance_to_body(p, e->a, e->fit.in_a);
     float db = distance_to_body(p, e->b, e->fit.in_b);
-    float half_a = grrl_joint_half_extent(p, e->a);
-    float half_b = grrl_joint_half_extent(p, e->b);
-    if (!p->config.static_background)
-        return da < FAR_BODY * half_a && db < FAR_BODY * half_b;
-    if (da < gap && db < gap)
+    if (table && da < gap && db < gap)
         return true;
-    return support > CERTAIN && da < gap + FAR_ON_TABLE * half_a &&
-           db < gap + FAR_ON_TABLE * half_b && !lies_between(p, e, da > db ? da : db);
+    if (!(da < gap + share * grrl_joint_half_extent(p, e->a)) ||
+        !(db < gap + share * grrl_joint_half_extent(p, e->b)))
+        return false;
+    return !table || (support > CERTAIN && !lies_between(p, e, da > db ? da : db));
 }
 
 /* Whether a third body lies closer to both than they are to each other in keyframe k. */
@@ -141,8 +141,8 @@ static bool is_slide_near(const struct grrl_perception *p, const struct grrl_joi
     if (support > CERTAIN)
         far += grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b);
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        bool both = p->pose[k][e->a].weight > 0.0f && p->pose[k][e->b].weight > 0.0f;
-        float gap = both && p->keyframe[k].at_rest ? gap_between(p, e->a, e->b, k) : 0.0f;
+        bool both_rest = p->keyframe[k].at_rest && grrl_perception_sees_both(p, k, e->a, e->b);
+        float gap = both_rest ? gap_between(p, e->a, e->b, k) : 0.0f;
         if (gap > far ||
             (gap > near && p->config.static_background && stands_between(p, e->a, e->b, k, gap)))
             return false;
@@ -174,8 +174,7 @@ float grrl_joint_distance_cost(const struct grrl_perception *p, const struct grr
     float db = distance_to_body(p, e->b, e->fit.in_b);
     if (e->type == GRRL_PRISMATIC) {
         uint8_t k = p->n_keyframes;
-        while (k > 1 &&
-               (!(p->pose[k - 1][e->a].weight > 0.0f) || !(p->pose[k - 1][e->b].weight > 0.0f)))
+        while (k > 1 && !grrl_perception_sees_both(p, (uint8_t)(k - 1), e->a, e->b))
             k--;
         da = gap_between(p, e->a, e->b, (uint8_t)(k - 1));
         db = 0.0f;

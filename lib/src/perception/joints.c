@@ -48,10 +48,6 @@
 /* A joint less likely than this does not enter the model. */
 #define BELIEVED 0.5f
 
-/* Limit on the evidence for a slide from a common turn: odds of 3 million to 1. More would only
- * hide the evidence of later pushes. */
-#define TURN_EVIDENCE_MAX 30.0f
-
 /* Evidence from each further push that slid along the same line. Independent things would move
  * within 12 degrees of it, either way, once in exp(4 / 2) = 7 pushes. */
 #define PUSH_EVIDENCE 4.0f
@@ -440,7 +436,7 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
             last = at;
         }
     }
-    turned = turned < TURN_EVIDENCE_MAX ? turned : TURN_EVIDENCE_MAX;
+    turned = turned < GRRL_TURN_EVIDENCE_MAX ? turned : GRRL_TURN_EVIDENCE_MAX;
     return turned + (pushes > 0.0f ? PUSH_EVIDENCE * pushes : 0.0f);
 }
 
@@ -453,11 +449,14 @@ static float untied_cost(const struct grrl_perception *p, const struct motion *m
 {
     const struct grrl_joint_fit *fit = &e->fit;
     bool table = p->config.static_background;
-    bool turns = e->type == GRRL_REVOLUTE;
-    float tested = turns   ? curvature_evidence(p, motion, fit)
-                   : table ? sliding_evidence(p, motion, fit)
-                           : grrl_joint_slide_in_pictures(p, e);
-    tested += turns && !table ? grrl_joint_place_evidence(p, e) : 0.0f;
+    float tested;
+    if (e->type == GRRL_REVOLUTE)
+        tested =
+            curvature_evidence(p, motion, fit) + (table ? 0.0f : grrl_joint_place_evidence(p, e));
+    else if (table)
+        tested = sliding_evidence(p, motion, fit);
+    else
+        tested = grrl_joint_slide_in_pictures(p, e, fit->point_variance * (float)motion->n);
     float untested = fit->excess + tested + (table ? JOINT_PRIOR : INDEPENDENT_PRIOR);
     return free < untested ? free : untested;
 }

@@ -68,6 +68,12 @@ static inline struct grrl_vec2 grrl_origin_in(const struct grrl_perception_pose 
                            1.0f / (1.0f + a->growth));
 }
 
+static inline bool grrl_perception_sees_both(const struct grrl_perception *p, uint8_t k, uint8_t a,
+                                             uint8_t b)
+{
+    return p->pose[k][a].weight > 0.0f && p->pose[k][b].weight > 0.0f;
+}
+
 /* Variance of a keyframe's point per axis, m^2: noise of `weight` averaged frames + model error. */
 static inline float grrl_perception_variance(const struct grrl_perception *p, uint8_t weight)
 {
@@ -282,9 +288,14 @@ float grrl_joint_place_evidence(const struct grrl_perception *p,
 float grrl_joint_distance_cost(const struct grrl_perception *p,
                                const struct grrl_joint_evidence *e);
 
-/* joint_pictures.c: evidence for a slide, in chi squared, as seen by a camera that may move. */
+/* Limit on the evidence for a slide from a common turn: odds of 3 million to 1. More would only
+ * hide the evidence of later pushes. */
+#define GRRL_TURN_EVIDENCE_MAX 30.0f
+
+/* joint_pictures.c: evidence for a slide, in chi squared, as seen by a camera that may move.
+ * variance: of a position across the line in one keyframe. */
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
-                                   const struct grrl_joint_evidence *e);
+                                   const struct grrl_joint_evidence *e, float variance);
 
 /* structure.c: whether a third body turns relative to both bodies about the same pivot. */
 bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);

@@ -6,7 +6,8 @@
 
 #include "structure/match_private.h"
 
-enum { FINISHED = -1 };
+/* A depth that no search reaches: there is no further mapping. */
+enum { FINISHED = GRRL_MAX_LINKS };
 
 static bool same_counts(const struct grrl_match_plan *a, const struct grrl_match_plan *b)
 {
@@ -25,18 +26,20 @@ enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
  * The candidate targets at this depth: allowed, unused, and joined to the images of all mapped
  * neighbours by joints of the right types.
  */
-static inline uint32_t open_depth(const struct grrl_match *match, int depth, uint32_t used)
+static inline uint32_t open_depth(const struct grrl_match *match,
+                                  const struct grrl_match_plan *order, size_t depth,
+                                  uint32_t unused)
 {
-    const struct grrl_match_step *step = &match->order->step[depth];
+    const struct grrl_match_step *step = &order->step[depth];
     const struct grrl_graph *target = match->target->graph;
-    uint32_t candidates = match->allowed[step->vertex] & ~used;
+    uint32_t candidates = match->allowed[step->vertex] & unused;
     if (step->parent != GRRL_UNMAPPED)
         candidates &= target->joined[step->type][match->image[step->parent]];
     if (step->ties == 0)
         return candidates;
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
         uint32_t earlier = match->pattern->graph->joined[type][step->vertex];
-        for (earlier &= match->order->earlier[depth]; earlier != 0; earlier &= earlier - 1u)
+        for (earlier &= order->earlier[depth]; earlier != 0; earlier &= earlier - 1u)
             candidates &= target->joined[type][match->image[grrl_first_bit(earlier)]];
     }
     return candidates;
@@ -62,12 +65,13 @@ static inline enum grrl_status search(struct grrl_match *match, bool exact)
 {
     const struct grrl_match_plan *pattern = match->pattern;
     const struct grrl_match_plan *target = match->target;
-    const struct grrl_match_step *step = match->order->step;
-    int last = pattern->graph->n - 1;
-    int depth = match->depth;
-    uint32_t used = match->used;
-    uint32_t budget = match->budget;
+    const struct grrl_match_plan *order = match->order;
+    const size_t last = pattern->graph->n - 1u;
+    size_t depth = match->depth;
+    uint32_t unused = match->unused;
+    int64_t left = match->budget;
     uint32_t candidates = match->candidates[depth];
+    uint8_t vertex = order->step[depth].vertex;
     enum grrl_status status;
     for (;;) {
         if (candidates == 0) {
@@ -77,19 +81,20 @@ static inline enum grrl_status search(struct grrl_match *match, bool exact)
                 break;
             }
             depth--;
-            used &= ~grrl_bit(match->image[step[depth].vertex]);
+            vertex = order->step[depth].vertex;
+            unused |= grrl_bit(match->image[vertex]);
             candidates = match->candidates[depth];
             continue;
         }
-        if (budget == 0) {
+        if (--left < 0) {
+            left = 0;
             match->candidates[depth] = candidates;
             status = GRRL_ERR_UNDECIDED;
             break;
         }
-        budget--;
         uint8_t image = grrl_first_bit(candidates);
-        uint8_t vertex = step[depth].vertex;
-        candidates &= candidates - 1u;
+        uint32_t taken = candidates & (0u - candidates);
+        candidates ^= taken;
         if (!is_feasible(pattern, vertex, target, image, exact))
             continue;
         match->image[vertex] = image;
@@ -98,22 +103,23 @@ static inline enum grrl_status search(struct grrl_match *match, bool exact)
             status = GRRL_OK;
             break;
         }
-        used |= grrl_bit(image);
+        unused ^= taken;
         depth++;
-        candidates = open_depth(match, depth, used);
+        vertex = order->step[depth].vertex;
+        candidates = open_depth(match, order, depth, unused);
     }
-    match->depth = depth;
-    match->used = used;
-    match->budget = budget;
+    match->depth = (uint8_t)depth;
+    match->unused = unused;
+    match->budget = (uint32_t)left;
     return status;
 }
 
 static void start(struct grrl_match *match)
 {
     match->depth = 0;
-    match->used = 0;
+    match->unused = UINT32_MAX;
     if (match->pattern->graph->n > 0)
-        match->candidates[0] = open_depth(match, 0, 0);
+        match->candidates[0] = open_depth(match, match->order, 0, UINT32_MAX);
     memset(match->image, GRRL_UNMAPPED,
            sizeof match->image); /* entries beyond the pattern stay unmapped */
 }
@@ -153,26 +159,41 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
     start(match);
 }
 
+void grrl_match_start_planned(struct grrl_match *match, enum grrl_match_kind kind,
+                              const struct grrl_match_plan *pattern,
+                              const struct grrl_match_plan *target, uint32_t budget)
+{
+    const uint8_t n = pattern->graph->n;
+    match->pattern = pattern;
+    match->target = target;
+    match->order = pattern;
+    match->kind = kind;
+    match->budget = budget;
+    if (kind == GRRL_MATCH_ISOMORPHISM) {
+        for (uint8_t v = 0; v < n; v++)
+            match->allowed[v] = target->cell[pattern->rank[v]];
+    } else if (n > 0) {
+        for (uint8_t v = 0; v < GRRL_MAX_LINKS; v++)
+            match->allowed[v] = grrl_bits_below(target->graph->n);
+        /* no image restricts the first vertex, so its joints do */
+        const uint8_t first = pattern->step[0].vertex;
+        for (int type = 0; type < GRRL_JOINT_TYPES; type++)
+            match->allowed[first] &=
+                target->at_least[type][grrl_match_degree(pattern, first, type)];
+    }
+    start(match);
+}
+
 void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,
                               const struct grrl_match_plan *pattern,
                               const struct grrl_match_plan *target, uint32_t budget)
 {
+    kind = grrl_match_kind_for(kind, pattern, target);
     match->pattern = pattern;
     match->target = target;
-    match->order = pattern;
-    match->kind = grrl_match_kind_for(kind, pattern, target);
-    match->budget = budget;
     match->depth = FINISHED;
-    if (!grrl_match_planned_may_fit(match->kind, pattern, target))
-        return;
-    uint8_t n = pattern->graph->n;
-    if (match->kind == GRRL_MATCH_ISOMORPHISM)
-        for (uint8_t v = 0; v < n; v++)
-            match->allowed[v] = target->cell[pattern->rank[v]];
-    else
-        for (uint8_t v = 0; v < n; v++)
-            match->allowed[v] = grrl_bits_below(target->graph->n);
-    start(match);
+    if (grrl_match_planned_may_fit(kind, pattern, target))
+        grrl_match_start_planned(match, kind, pattern, target, budget);
 }
 
 void grrl_match_fix(struct grrl_match *match, uint8_t pattern_vertex, uint8_t target_vertex)

@@ -40,7 +40,7 @@ enum grrl_status grrl_match_find_planned(enum grrl_match_kind kind,
         return GRRL_ERR_NONE;
     uint32_t quick = budget < QUICK_STEPS ? budget : QUICK_STEPS;
     struct grrl_match match;
-    grrl_match_begin_planned(&match, kind, pattern, target, quick);
+    grrl_match_start_planned(&match, kind, pattern, target, quick);
     enum grrl_status status = grrl_match_next(&match, map);
     if (status != GRRL_ERR_UNDECIDED)
         return status;

@@ -147,6 +147,15 @@ static void count_surroundings(struct grrl_match_plan *plan)
     }
 }
 
+static void count_degrees(struct grrl_match_plan *plan)
+{
+    memset(plan->at_least, 0, sizeof plan->at_least);
+    for (int type = 0; type < GRRL_JOINT_TYPES; type++)
+        for (uint8_t i = 0; i < plan->graph->n; i++)
+            for (unsigned k = 0; k <= grrl_match_degree(plan, i, type); k++)
+                plan->at_least[type][k] |= grrl_bit(i);
+}
+
 /* Ranks the colours by value; each cell is the set of vertices of one colour. */
 static void rank_colours(struct grrl_match_plan *plan)
 {
@@ -222,6 +231,7 @@ void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *g
     for (int round = 0; round < ROUNDS; round++)
         refine_colours(plan);
     count_surroundings(plan);
+    count_degrees(plan);
     rank_colours(plan);
     order_planned(plan);
     grrl_signature_of(graph, mask, &plan->monotone);

@@ -16,6 +16,14 @@ static inline uint32_t grrl_match_neighbours(const struct grrl_graph *graph, uin
     return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
 }
 
+/* A vertex's joints of a type, at most GRRL_MATCH_DEGREES - 1. */
+static inline unsigned grrl_match_degree(const struct grrl_match_plan *plan, uint8_t vertex,
+                                         int type)
+{
+    unsigned degree = plan->growing[vertex] >> 8 * type & 0xffu;
+    return degree < GRRL_MATCH_DEGREES ? degree : GRRL_MATCH_DEGREES - 1;
+}
+
 /*
  * Finds one mapping as in grrl_match_find, by a search that needs no plan. GRRL_ERR_UNDECIDED: the
  * budget is used up.
@@ -43,6 +51,11 @@ void grrl_match_order_partly(struct grrl_match_plan *pattern, enum grrl_match_ki
 enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
                                          const struct grrl_match_plan *pattern,
                                          const struct grrl_match_plan *target);
+
+/* Like grrl_match_begin_planned, for a kind by grrl_match_kind_for and plans that may fit. */
+void grrl_match_start_planned(struct grrl_match *match, enum grrl_match_kind kind,
+                              const struct grrl_match_plan *pattern,
+                              const struct grrl_match_plan *target, uint32_t budget);
 
 /* A necessary condition, checked before any search; false is certain. */
 bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,

@@ -3,7 +3,7 @@
  * prevent nearly every dead end.
  *
  * Bit v of a set tells whether vertex v has a trait: it has the same label as the reference (the
- * pattern's first vertex), or a joint of some type to vertices that have or lack that label. The
+ * pattern's first vertex), or joints of some type to any vertex or to one with that label. The
  * sets of both graphs give each pattern vertex its domain, the target vertices with compatible
  * traits. Machines with vector instructions handle four vertices at a time.
  */
@@ -13,7 +13,7 @@
 
 /*
  * The traits of a vertex, for each type of joint: a joint to a vertex labelled like the reference,
- * a joint to another vertex, and two or more joints.
+ * any joint, and two or more joints.
  */
 enum { TRAITS = 3 * GRRL_JOINT_TYPES };
 
@@ -49,25 +49,25 @@ static void find_traits(struct side *side, grrl_label reference)
 {
     const struct grrl_graph *graph = side->graph;
     uint64_t to_alike = 0; /* revolute in the lower half, prismatic in the upper */
-    uint64_t to_others = 0;
+    uint64_t any = 0;
     uint64_t more = 0;
-    uint32_t alike = 0;
-    for (unsigned i = 0; i < graph->n; i++) {
+    uint64_t bit = 1;
+    uint64_t alike = 0;
+    for (unsigned i = 0; i < graph->n; i++, bit <<= 1) {
         uint64_t joined =
             graph->joined[GRRL_REVOLUTE][i] | (uint64_t)graph->joined[GRRL_PRISMATIC][i] << 32;
-        uint64_t is_alike = side->label[i] == reference;
-        uint64_t others = is_alike - 1u;
-        alike |= (uint32_t)is_alike << i;
-        more |= (to_alike | to_others) & joined;
-        to_others |= joined & others;
-        to_alike |= joined & ~others;
+        uint64_t is_alike = 0u - (uint64_t)(side->label[i] == reference);
+        alike |= bit & is_alike;
+        to_alike |= joined & is_alike;
+        more |= any & joined;
+        any |= joined;
     }
-    const uint64_t trait[TRAITS / GRRL_JOINT_TYPES] = {to_alike, to_others, more};
+    const uint64_t trait[TRAITS / GRRL_JOINT_TYPES] = {to_alike, any, more};
     for (size_t k = 0; k < TRAITS / GRRL_JOINT_TYPES; k++) {
         side->trait[2 * k] = (uint32_t)trait[k];
         side->trait[2 * k + 1] = (uint32_t)(trait[k] >> 32);
     }
-    side->alike = alike;
+    side->alike = (uint32_t)alike;
 }
 
 static uint32_t count_ends(const struct grrl_graph *graph, int type)
@@ -126,14 +126,14 @@ static inline bool find_domains(struct quick *quick, bool exact, uint8_t *first)
 }
 
 /* Target vertices that are free and joined to the images of the vertex's placed neighbours. */
-static inline uint32_t find_candidates(const struct quick *quick, uint8_t vertex, uint32_t placed,
-                                       uint32_t used)
+static inline uint32_t find_candidates(const struct quick *quick, uint8_t vertex, uint32_t unplaced,
+                                       uint32_t unused)
 {
     const struct grrl_graph *pattern = quick->pattern.graph;
     const struct grrl_graph *target = quick->target.graph;
-    uint32_t candidates = quick->domain[vertex] & ~used;
+    uint32_t candidates = quick->domain[vertex] & unused;
     uint32_t prismatic = pattern->joined[GRRL_PRISMATIC][vertex];
-    uint32_t back = (pattern->joined[GRRL_REVOLUTE][vertex] | prismatic) & placed;
+    uint32_t back = (pattern->joined[GRRL_REVOLUTE][vertex] | prismatic) & ~unplaced;
     for (; back != 0; back &= back - 1u) {
         uint8_t earlier = grrl_first_bit(back);
         candidates &= target->joined[prismatic >> earlier & 1u][quick->image[earlier]];
@@ -148,12 +148,12 @@ static enum grrl_status search(struct quick *quick, uint8_t first, uint32_t budg
     const struct grrl_graph *pattern = quick->pattern.graph;
     const grrl_label *label = quick->pattern.label;
     const grrl_label *target_label = quick->target.label;
-    const uint32_t all = grrl_bits_below(pattern->n);
     uint8_t *image_of = quick->image;
-    unsigned depth = 0;
-    unsigned deepest = 0;
-    uint32_t placed = 0;
-    uint32_t used = 0;
+    int64_t left = budget;
+    size_t depth = 0;
+    size_t deepest = 0;
+    uint32_t unplaced = grrl_bits_below(pattern->n);
+    uint32_t unused = UINT32_MAX;
     uint32_t frontier = 0;
     uint8_t vertex = quick->vertex[0] = first;
     uint32_t candidates = quick->domain[first];
@@ -162,33 +162,33 @@ static enum grrl_status search(struct quick *quick, uint8_t first, uint32_t budg
             if (depth == 0)
                 return GRRL_ERR_NONE;
             vertex = quick->vertex[--depth];
-            placed &= ~grrl_bit(vertex);
-            used &= ~grrl_bit(image_of[vertex]);
+            unplaced |= grrl_bit(vertex);
+            unused |= grrl_bit(image_of[vertex]);
             candidates = quick->candidates[depth];
             continue;
         }
-        if (budget == 0)
+        if (--left < 0)
             return GRRL_ERR_UNDECIDED;
-        budget--;
         uint8_t image = grrl_first_bit(candidates);
-        candidates &= candidates - 1u;
+        uint32_t taken = candidates & (0u - candidates);
+        candidates ^= taken;
         if (label[vertex] != target_label[image])
             continue;
         image_of[vertex] = image;
         quick->candidates[depth] = candidates;
-        placed |= grrl_bit(vertex);
-        used |= grrl_bit(image);
-        if (placed == all)
+        unplaced &= ~grrl_bit(vertex);
+        unused ^= taken;
+        if (unplaced == 0)
             return GRRL_OK;
         if (++depth > deepest) {
-            uint32_t older = frontier & ~placed;
-            frontier = older | (grrl_match_neighbours(pattern, vertex) & ~placed);
+            uint32_t older = frontier & unplaced;
+            frontier = older | (grrl_match_neighbours(pattern, vertex) & unplaced);
             uint32_t choices = older != 0 ? older : frontier;
-            quick->vertex[depth] = grrl_first_bit(choices != 0 ? choices : all & ~placed);
+            quick->vertex[depth] = grrl_first_bit(choices != 0 ? choices : unplaced);
             deepest = depth;
         }
         vertex = quick->vertex[depth];
-        candidates = find_candidates(quick, vertex, placed, used);
+        candidates = find_candidates(quick, vertex, unplaced, unused);
     }
 }
 

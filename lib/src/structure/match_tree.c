@@ -26,14 +26,14 @@ struct tree_search {
     uint32_t spare[GRRL_MAX_LINKS][GRRL_MAX_LINKS];
 };
 
-static bool is_forest(const struct grrl_match_plan *plan, unsigned most_components)
+static bool is_forest(const struct grrl_match_plan *plan, unsigned max_components)
 {
     unsigned components = 0;
     uint32_t rest = grrl_bits_below(plan->graph->n);
     for (; rest != 0; rest &= ~grrl_graph_component(plan->graph, grrl_first_bit(rest)))
         components++;
     unsigned joints = (unsigned)plan->joints[GRRL_REVOLUTE] + plan->joints[GRRL_PRISMATIC];
-    return components <= most_components && joints + components == plan->graph->n;
+    return components <= max_components && joints + components == plan->graph->n;
 }
 
 static bool is_compatible(const struct tree_search *search, uint8_t p, uint8_t t)

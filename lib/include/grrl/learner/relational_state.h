@@ -24,6 +24,12 @@ void grrl_relational_state_of(const struct grrl_model *model, float large_m,
                               struct grrl_graph *state, struct grrl_name *names,
                               struct grrl_edge *edges);
 
+/* The structure of a model as a term, D(lb, ..), with links named fn and their properties. Statuses
+ * as for grrl_graph_to_term. */
+GRRL_MUST_USE enum grrl_status grrl_relational_term_of(const struct grrl_model *model,
+                                                       float large_m, struct grrl_term_store *store,
+                                                       grrl_term *term);
+
 GRRL_API_END
 
 #endif

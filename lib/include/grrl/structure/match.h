@@ -35,6 +35,9 @@ enum { GRRL_UNMAPPED = 0xff };
 #define GRRL_MATCH_BUDGET 20000
 #endif
 
+/* Degrees told apart where a search starts: 0, 1, 2, and 3 or more joints of a type. */
+enum { GRRL_MATCH_DEGREES = 4 };
+
 /* One pattern vertex, in search order. */
 struct grrl_match_step {
     /* private */
@@ -56,6 +59,8 @@ struct grrl_match_plan {
     uint32_t colour[GRRL_MAX_LINKS];  /* per vertex: hash of its label and surroundings */
     uint32_t growing[GRRL_MAX_LINKS]; /* per vertex: four counts, never smaller in a larger graph */
     uint32_t cell[GRRL_MAX_LINKS];    /* per rank: the vertices of that colour */
+    /* per type and degree: the vertices with at least so many joints */
+    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MATCH_DEGREES];
     uint32_t earlier[GRRL_MAX_LINKS]; /* per step: the vertices of earlier steps */
     struct grrl_match_step step[GRRL_MAX_LINKS];
 };
@@ -67,8 +72,8 @@ struct grrl_match {
     const struct grrl_match_plan *order; /* the plan whose step order is used */
     enum grrl_match_kind kind;
     uint32_t budget;                     /* search steps left */
-    int depth;                           /* vertices mapped; negative: no further mapping */
-    uint32_t used;                       /* targets in use */
+    uint8_t depth;                       /* vertices mapped; GRRL_MAX_LINKS: no further mapping */
+    uint32_t unused;                     /* targets not in use */
     uint32_t allowed[GRRL_MAX_LINKS];    /* per pattern vertex: permitted targets */
     uint32_t candidates[GRRL_MAX_LINKS]; /* per depth: targets not yet tried */
     uint8_t image[GRRL_MAX_LINKS];       /* per pattern vertex */

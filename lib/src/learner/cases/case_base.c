@@ -140,10 +140,10 @@ static struct mean mean_of(const struct grrl_case_config *config, const struct e
 }
 
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
-                         const struct grrl_context *context, struct grrl_estimate *estimate)
+                         uint32_t key, struct grrl_estimate *estimate)
 {
     struct evidence evidence;
-    gather_evidence(base, config, grrl_context_key(context), &evidence, estimate);
+    gather_evidence(base, config, key, &evidence, estimate);
     struct mean mean = mean_of(config, &evidence, probability_as_known(base));
     float margin = config->bound / grrl_sqrt(mean.weight);
     estimate->value = mean.value;
@@ -210,9 +210,8 @@ static void add_to_all(struct grrl_case *met, float reward)
 }
 
 uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
-                          const struct grrl_context *context, float reward)
+                          uint32_t key, float reward)
 {
-    uint32_t key = grrl_context_key(context);
     update_log_odds(base, config, key, reward);
     if (base->capacity == 0)
         return GRRL_NO_CASE;

@@ -93,12 +93,10 @@ static enum grrl_status read_log_odds(struct grrl_record *record, float *log_odd
 
 static bool is_key(uint32_t key)
 {
-    struct grrl_context context;
-    grrl_context_of_key(key, &context);
     for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        if (context.part[i] > grrl_context_max[i])
+        if (grrl_context_part(key, i) > grrl_context_max[i])
             return false;
-    return grrl_context_key(&context) == key;
+    return (key & ~grrl_context_key_bits(GRRL_ALL_CONTEXT_PARTS)) == 0;
 }
 
 /* Whether a case is consistent with those read so far: contexts and times must be unique. */

@@ -30,25 +30,30 @@ static struct grrl_case *find(struct grrl_case_base *base, uint32_t key, uint32_
     return NULL;
 }
 
-/* The older of two cases comes first; of two as old, the one with the lower key. */
-static bool comes_before(const struct grrl_case *a, const struct grrl_case *b)
+enum order { BY_AGE, BY_REWARDS };
+
+/* The older of two cases comes first, or the one with fewer rewards; of two as old, the one with
+ * the lower key. */
+static bool comes_before(const struct grrl_case *a, const struct grrl_case *b, enum order order)
 {
+    if (order == BY_REWARDS && a->n_all != b->n_all)
+        return a->n_all < b->n_all;
     return a->used_at != b->used_at ? a->used_at < b->used_at : a->key < b->key;
 }
 
-static void sort(struct grrl_case_base *base)
+static void sort(struct grrl_case_base *base, enum order order)
 {
     for (uint32_t i = 1; i < base->n; i++) {
         struct grrl_case moved = base->cases[i];
         uint32_t at = i;
-        for (; at > 0 && comes_before(&moved, &base->cases[at - 1]); at--)
+        for (; at > 0 && comes_before(&moved, &base->cases[at - 1], order); at--)
             base->cases[at] = base->cases[at - 1];
         base->cases[at] = moved;
     }
 }
 
 /* Drops the first cases, so that `most` are left. */
-static void drop_oldest(struct grrl_case_base *base, uint32_t most)
+static void drop_first(struct grrl_case_base *base, uint32_t most)
 {
     uint32_t excess = base->n > most ? base->n - most : 0;
     base->n -= excess;
@@ -82,8 +87,9 @@ enum grrl_status grrl_cases_merge(struct grrl_case_base *base, struct grrl_case_
         else
             base->cases[base->n++] = from->cases[i];
     }
-    sort(base);
-    drop_oldest(base, most);
+    sort(base, BY_REWARDS);
+    drop_first(base, most);
+    sort(base, BY_AGE);
     for (uint32_t i = 1; i < base->n; i++) /* no two cases were met at the same time */
         if (base->cases[i].used_at <= base->cases[i - 1].used_at)
             base->cases[i].used_at = base->cases[i - 1].used_at + 1;

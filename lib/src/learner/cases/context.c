@@ -20,6 +20,7 @@
 #define LONGER 1.15f
 
 enum { AHEAD = 1, BEHIND = 2 };
+_Static_assert(GRRL_JOINT_TYPES == 2, "GRRL_CONTEXT_ELSEWHERE has a bit for each type");
 enum { MAX_TRIED = 3, MAX_JOINTS = 2, MAX_OTHERS_TRIED = 2, MAX_LONGER = 2, MAX_OCTAVE = 4 };
 
 const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS] = {
@@ -34,6 +35,7 @@ const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_LONGER] = MAX_LONGER,
     [GRRL_CONTEXT_ASPECT] = 2,
     [GRRL_CONTEXT_SKEW] = 2,
+    [GRRL_CONTEXT_ELSEWHERE] = 3,
 };
 
 /* Where a part begins in a key: parts of 3 bits at 18 and 22, all others in pairs of bits. */
@@ -49,6 +51,7 @@ static const uint8_t key_shift[GRRL_CONTEXT_PARTS] = {
     [GRRL_CONTEXT_LONGER] = 12,
     [GRRL_CONTEXT_ASPECT] = 14,
     [GRRL_CONTEXT_SKEW] = 16,
+    [GRRL_CONTEXT_ELSEWHERE] = 26,
 };
 
 static uint32_t part_mask(unsigned part)
@@ -64,10 +67,9 @@ uint32_t grrl_context_key(const struct grrl_context *context)
     return key;
 }
 
-void grrl_context_of_key(uint32_t key, struct grrl_context *context)
+uint8_t grrl_context_part(uint32_t key, enum grrl_context_part part)
 {
-    for (unsigned i = 0; i < GRRL_CONTEXT_PARTS; i++)
-        context->part[i] = (uint8_t)(key >> key_shift[i] & part_mask(i));
+    return (uint8_t)(key >> key_shift[part] & part_mask(part));
 }
 
 uint32_t grrl_context_key_bits(uint16_t parts)
@@ -154,6 +156,7 @@ static void describe_link(const struct grrl_model *model, float large_m, uint8_t
     const struct grrl_body *self = &model->body[body];
     uint8_t joints[GRRL_JOINT_TYPES];
     unsigned longer = 0;
+    unsigned elsewhere = 0;
     uint8_t longest = 0;
     count_joints(model, body, joints);
     for (uint8_t i = 0; i < model->n_bodies; i++)
@@ -164,6 +167,8 @@ static void describe_link(const struct grrl_model *model, float large_m, uint8_t
             uint8_t other = joint->a == body ? joint->b : joint->a;
             uint8_t length = (uint8_t)(1 + octave(model->body[other].length_m, large_m));
             longest = length > longest ? length : longest;
+        } else {
+            elsewhere |= 1u << joint->type;
         }
     }
     memset(context, 0, sizeof *context);
@@ -172,6 +177,7 @@ static void describe_link(const struct grrl_model *model, float large_m, uint8_t
     context->part[GRRL_CONTEXT_REVOLUTE] = at_most(joints[GRRL_REVOLUTE], MAX_JOINTS);
     context->part[GRRL_CONTEXT_PRISMATIC] = at_most(joints[GRRL_PRISMATIC], MAX_JOINTS);
     context->part[GRRL_CONTEXT_LONGER] = at_most(longer, MAX_LONGER);
+    context->part[GRRL_CONTEXT_ELSEWHERE] = (uint8_t)elsewhere;
     context->part[GRRL_CONTEXT_ASPECT] = (uint8_t)((self->width_m > STOUT * self->length_m) +
                                                    (self->width_m > ROUND * self->length_m));
 }

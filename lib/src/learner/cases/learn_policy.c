@@ -78,21 +78,11 @@ static bool is_known(const struct grrl_estimate *estimate)
     return estimate->closest != GRRL_NO_CASE && estimate->mismatches == 0;
 }
 
-static unsigned times_tried(uint32_t key)
+/* What a choice compares. Only a push not yet made on the link as it is gets the bonus for what is
+ * unknown; made once, it tells little new, and is repeated where repeating has paid. */
+static float score_of(const struct grrl_estimate *estimate, uint32_t key)
 {
-    struct grrl_context context;
-    grrl_context_of_key(key, &context);
-    return context.part[GRRL_CONTEXT_TRIED];
-}
-
-/* Whether pushes already made may be chosen: where the configuration says so, or none is left. */
-static bool may_repeat(const struct grrl_learn_policy *policy)
-{
-    for (uint8_t link = 0; link < policy->contexts.n_links; link++)
-        for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++)
-            if (times_tried(policy->contexts.action[link][direction]) == 0)
-                return policy->config.repeats != 0;
-    return true;
+    return grrl_context_part(key, GRRL_CONTEXT_TRIED) == 0 ? estimate->upper : estimate->value;
 }
 
 /* The estimates of all pushes of a link; equal contexts are looked up once. Returns how many are
@@ -106,12 +96,11 @@ static unsigned estimate_link(const struct grrl_learn_policy *policy, uint8_t li
         uint8_t same = 0;
         while (keys[same] != keys[direction])
             same++;
-        struct grrl_context context;
-        grrl_context_of_key(keys[direction], &context);
         if (same < direction)
             estimates[direction] = estimates[same];
         else
-            grrl_cases_estimate(&policy->cases, &policy->config, &context, &estimates[direction]);
+            grrl_cases_estimate(&policy->cases, &policy->config, keys[direction],
+                                &estimates[direction]);
         met += is_known(&estimates[direction]);
     }
     return met;
@@ -126,20 +115,18 @@ void grrl_learn_choose(void *self, const struct grrl_view *view, struct grrl_ran
     uint32_t ties = 0;
     unsigned met = 0;
     float best = 0.0f;
-    bool repeat = may_repeat(policy);
     for (uint8_t link = 0; link < policy->contexts.n_links; link++) {
         struct grrl_estimate estimates[GRRL_DIRECTIONS];
         met += estimate_link(policy, link, estimates);
         for (uint8_t direction = 0; direction < GRRL_DIRECTIONS; direction++) {
             const struct grrl_estimate *estimate = &estimates[direction];
-            if (!repeat && times_tried(policy->contexts.action[link][direction]) > 0)
-                continue;
-            if (ties == 0 || estimate->upper > best) {
+            float score = score_of(estimate, policy->contexts.action[link][direction]);
+            if (ties == 0 || score > best) {
                 ties = 0;
-                best = estimate->upper;
+                best = score;
             }
             /* the kth of equal actions replaces the choice with probability 1 / k */
-            if (estimate->upper == best && grrl_random_below(random, ++ties) == 0) {
+            if (score == best && grrl_random_below(random, ++ties) == 0) {
                 choice->link = link;
                 choice->direction = direction;
                 choice->reason = is_known(estimate) ? GRRL_CHOICE_EXPLOIT : GRRL_CHOICE_EXPLORE;
@@ -169,9 +156,9 @@ void grrl_learn_learn(void *self, const struct grrl_outcome *outcome, struct grr
     struct grrl_learn_policy *policy = self;
     const struct grrl_choice *choice = &outcome->choice;
     grrl_attempts_add(&policy->attempts, outcome->body_number, choice->direction);
-    struct grrl_context context;
-    grrl_context_of_key(policy->contexts.action[choice->link][choice->direction], &context);
-    update->index = grrl_cases_learn(&policy->cases, &policy->config, &context, outcome->reward);
+    update->index =
+        grrl_cases_learn(&policy->cases, &policy->config,
+                         policy->contexts.action[choice->link][choice->direction], outcome->reward);
 }
 
 struct grrl_usage grrl_learn_usage(const void *self)

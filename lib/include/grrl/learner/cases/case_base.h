@@ -45,7 +45,6 @@ struct grrl_case_config {
     float confidence; /* initial and highest log odds that the object is as known, >= 0; 0.5 */
     float present;    /* extra weight of a reward from the running trial, >= 0; 3 */
     uint8_t memory;   /* rewards a case remembers, old or new, >= 1; 5 */
-    uint8_t repeats;  /* 0: no push again while its link stays the same and others are left */
     uint16_t parts;   /* bit i: part i of a context counts; default all */
 };
 
@@ -107,14 +106,14 @@ void grrl_cases_clear(struct grrl_case_base *base);
  * effect. */
 void grrl_cases_begin_trial(struct grrl_case_base *base, const struct grrl_case_config *config);
 
-/* Cost: linear in cases, about 50 instructions each. */
+/* The estimate for the context with this key. Cost: linear in cases, about 50 instructions each. */
 void grrl_cases_estimate(const struct grrl_case_base *base, const struct grrl_case_config *config,
-                         const struct grrl_context *context, struct grrl_estimate *estimate);
+                         uint32_t key, struct grrl_estimate *estimate);
 
-/* Adds a reward, finite and within +-GRRL_MAX_REWARD. Returns the index of its case, which may be
- * the slot of an evicted one, or GRRL_NO_CASE with capacity 0. */
+/* Adds a reward, finite and within +-GRRL_MAX_REWARD, in the context with this key. Returns the
+ * index of its case, which may be the slot of an evicted one, or GRRL_NO_CASE with capacity 0. */
 uint32_t grrl_cases_learn(struct grrl_case_base *base, const struct grrl_case_config *config,
-                          const struct grrl_context *context, float reward);
+                          uint32_t key, float reward);
 
 #define GRRL_MAX_REWARD 1.0e6f
 
@@ -135,7 +134,8 @@ GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
 /*
  * Adds the cases of another base, so that two lives become one; which is added to which makes no
  * difference. Rewards in the same context are pooled, and both lives end now: a case is as old as
- * in the life that met it last. Keeps the `most` cases that were met last.
+ * in the life that met it last. Keeps the `most` cases with the most rewards; of as many, those
+ * that were met last.
  * Both bases start a new trial. GRRL_ERR_FULL: the first has no room for the cases of both. Cost:
  * quadratic in cases.
  */

@@ -29,6 +29,8 @@ enum grrl_context_part {
     GRRL_CONTEXT_ASPECT, /* of the link's width to its length: 0 up to 0.35, 1 up to 0.6, 2 */
     GRRL_CONTEXT_SKEW,   /* before any joint is known: the features thin out, 1 against the push, 2
                             along it, 0 neither */
+    GRRL_CONTEXT_ELSEWHERE, /* bit 0: a revolute joint is known away from the link, bit 1: a
+                               prismatic one */
     GRRL_CONTEXT_PARTS
 };
 
@@ -42,8 +44,8 @@ extern const uint8_t grrl_context_max[GRRL_CONTEXT_PARTS];
 /* A context in one number, 2 or 3 bits a part; equal contexts have equal keys. */
 uint32_t grrl_context_key(const struct grrl_context *context);
 
-/* The context with this key. */
-void grrl_context_of_key(uint32_t key, struct grrl_context *context);
+/* One part of the context with this key. */
+uint8_t grrl_context_part(uint32_t key, enum grrl_context_part part);
 
 /* The bits of a key that hold the parts of this set (bit i: part i). */
 uint32_t grrl_context_key_bits(uint16_t parts);
@@ -52,7 +54,7 @@ uint32_t grrl_context_key_bits(uint16_t parts);
 static inline unsigned grrl_context_differences(uint32_t a, uint32_t b, uint32_t bits)
 {
     uint32_t x = (a ^ b) & bits;
-    x = (x | x >> 1 | (x >> 2 & UINT32_C(0x440000))) & UINT32_C(0x455555); /* lowest bit of each */
+    x = (x | x >> 1 | (x >> 2 & UINT32_C(0x440000))) & UINT32_C(0x4455555); /* lowest bits */
     x = (x & UINT32_C(0x33333333)) + (x >> 2 & UINT32_C(0x33333333));
     x = (x + (x >> 4)) & UINT32_C(0x0f0f0f0f);
     return (unsigned)(x * UINT32_C(0x01010101) >> 24);

@@ -2,7 +2,8 @@
  * learn_policy.h: the policy `learn`, a contextual bandit.
  *
  * It describes each action by its context (context.h), estimates the reward by kernel regression
- * over the cases (case_base.h), and takes the action with the highest upper confidence bound.
+ * over the cases (case_base.h), and takes the action with the highest upper confidence bound, or
+ * estimate where the push was already made on the link as it is.
  * Rewards are immediate: what a push reveals distinguishes good pushes from bad ones without
  * look-ahead.
  */
