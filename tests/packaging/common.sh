@@ -8,10 +8,10 @@ need() {
     command -v "$1" >/dev/null || skip "there is no $1 (Debian: $2)"
 }
 
-# tool NAME: a program of packaging/setup-env
+# tool NAME: the path of a program of packaging/setup-env, for path=$(tool NAME)
 tool() {
     [ -x "$source/build/packaging/venv/bin/$1" ] ||
-        skip "there is no $1: packaging/setup-env was not run"
+        skip "there is no $1: packaging/setup-env was not run" >&2
     echo "$source/build/packaging/venv/bin/$1"
 }
 

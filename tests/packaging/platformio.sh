@@ -6,7 +6,8 @@ version=$1
 # shellcheck source=tests/packaging/common.sh
 . "$(dirname "$0")/common.sh"
 need arm-none-eabi-gcc gcc-arm-none-eabi
-python=$(dirname "$(tool pio)")/python
+pio=$(tool pio)
+python=$(dirname "$pio")/python
 
 # pack FOLDER: must say what is wrong with it
 refused() {

@@ -53,5 +53,6 @@ arm-none-eabi-nm "$work/build/module/libgrrl.a" 2>/dev/null |
     grep -q ' T grrl_learner_init_links10_joints2x_features96_frames20_' ||
     wrong "the library has other capacities"
 
-python=$(dirname "$(tool pio)")/python
+pio=$(tool pio)
+python=$(dirname "$pio")/python
 "$python" "$here/kconfig.py" "$source" || wrong "Kconfig"
