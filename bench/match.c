@@ -131,6 +131,9 @@ static void print_absent(void)
 #ifndef GRRL_BENCH_NETWORKX
                          " networkx"
 #endif
+#ifndef GRRL_BENCH_RDKIT
+                         " rdkit (retrieve)"
+#endif
         ;
     if (absent[0] != '\0')
         (void)printf("Not installed:%s\n\n", absent);
@@ -432,13 +435,13 @@ int bench_match(bool json, unsigned n_pairs)
     bool first = true;
     if (n_pairs > MAX_PAIRS)
         n_pairs = MAX_PAIRS;
-    if (json)
+    if (json) {
         (void)printf("[");
-    else
+    } else {
         print_absent();
-    if (!json)
         (void)printf("| links | question | peer | ns | with building both | p99 | worst | grrl is "
                      "faster | planned |\n|---|---|---|---|---|---|---|---|---|\n");
+    }
     for (int s = 0; s < N_SIZES; s++)
         for (int question = 0; question < BENCH_QUESTIONS; question++)
             run_question(json, &first, n_pairs, sizes[s], (enum bench_question)question);

@@ -222,6 +222,25 @@ static inline struct point seen_at(int k, int slot)
     return point_of(scene.keyframe[k].point[slot]);
 }
 
+/* The keyframe that saw most of these features; a feature counts as much as 1,000 frames averaged.
+ */
+static inline int scene_reference(const uint16_t *slots, int n)
+{
+    int best = 0;
+    int best_seen = 0;
+    for (int k = 0; k < scene.n_keyframes; k++) {
+        int seen = 0;
+        for (int i = 0; i < n; i++)
+            if (scene.keyframe[k].weight[slots[i]] > 0)
+                seen += 1000 + scene.keyframe[k].weight[slots[i]];
+        if (seen > best_seen) {
+            best = k;
+            best_seen = seen;
+        }
+    }
+    return best;
+}
+
 static inline bool is_near(double a, double b, double tolerance)
 {
     return fabs(a - b) <= tolerance * fmax(1.0, fmax(fabs(a), fabs(b)));

@@ -136,24 +136,6 @@ static void slow_choose(void)
     }
 }
 
-/* The keyframe that saw most features, and of these the one that saw them in more frames. */
-static int slow_reference(void)
-{
-    int best = 0;
-    int best_score = 0;
-    for (int k = 0; k < scene.n_keyframes; k++) {
-        int sum = 0;
-        for (int i = 0; i < n_slots; i++)
-            if (scene.keyframe[k].weight[slots[i]] > 0)
-                sum += 1000 + scene.keyframe[k].weight[slots[i]];
-        if (sum > best_score) {
-            best = k;
-            best_score = sum;
-        }
-    }
-    return best;
-}
-
 static bool both_see(int a, int b, int slot)
 {
     return scene.keyframe[a].weight[slot] > 0 && scene.keyframe[b].weight[slot] > 0;
@@ -252,7 +234,7 @@ static int slow_find(bool *largest)
 {
     bool explained[GRRL_MAX_FEATURES] = {false};
     int best = 0;
-    int k0 = slow_reference();
+    int k0 = scene_reference(slots, n_slots);
     int step = 1;
     while (n_slots >= 49 * step)
         step++;
@@ -359,7 +341,7 @@ static void larger_part_is_found(void **state)
         (void)grrl_consensus_misfit(&scene, slots, n_slots, 0, score);
         int seen = 0;
         for (int i = 0; i < 15; i++)
-            seen += scene.keyframe[slow_reference()].weight[i] > 0;
+            seen += scene.keyframe[scene_reference(slots, n_slots)].weight[i] > 0;
         assert_int_equal(grrl_consensus_find(&scene, slots, n_slots, score, members), seen);
         for (int i = 0; i < seen; i++)
             assert_true(members[i] < 15);

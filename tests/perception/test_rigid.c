@@ -111,28 +111,6 @@ static bool slow_place(int slot, const struct slow_pose *poses, struct point *lo
     return weight > 0.0;
 }
 
-/* Most features, then most frames, then the first. */
-static int slow_reference(const uint16_t *slots, int n)
-{
-    int best = 0;
-    int best_seen = 0;
-    int best_frames = 0;
-    for (int k = 0; k < scene.n_keyframes; k++) {
-        int seen = 0;
-        int frames = 0;
-        for (int i = 0; i < n; i++) {
-            seen += scene.keyframe[k].weight[slots[i]] > 0;
-            frames += scene.keyframe[k].weight[slots[i]];
-        }
-        if (1000 * seen + frames > 1000 * best_seen + best_frames) {
-            best = k;
-            best_seen = seen;
-            best_frames = frames;
-        }
-    }
-    return best;
-}
-
 /* From features to keyframes that saw two of them, and on to the others these saw; returns how many
  * features have a place. */
 static int slow_spread(const uint16_t *slots, int n, uint16_t *known, int n_known,
@@ -157,7 +135,7 @@ static int slow_spread(const uint16_t *slots, int n, uint16_t *known, int n_know
 
 static void slow_fit(const uint16_t *slots, int n, struct point *shape, struct slow_pose *poses)
 {
-    int reference = slow_reference(slots, n);
+    int reference = scene_reference(slots, n);
     uint16_t known[GRRL_MAX_FEATURES];
     int n_known = 0;
     struct point middle = {0.0, 0.0};

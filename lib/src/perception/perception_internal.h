@@ -107,7 +107,7 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
                       const struct grrl_vec2 *shape, struct grrl_perception_pose *poses,
                       size_t stride);
 
-/* The keyframe that saw most of these features, in more frames; the earliest in case of a tie. */
+/* The keyframe that saw most of these features; of several, the one averaged over most frames. */
 uint8_t grrl_rigid_reference(const struct grrl_perception *p, const uint16_t *slots, uint16_t n);
 
 /* Where the point of `slot` lies in the frame of these poses: the mean over all keyframes. */
