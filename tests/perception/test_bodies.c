@@ -139,7 +139,7 @@ static void assign_all(void)
     for (int round = 0; round < 6 && changed; round++) {
         changed = false;
         for (uint16_t i = 0; i < copy.n_slots; i++) {
-            uint8_t best = grrl_assign_best(&copy, i);
+            uint8_t best = grrl_assign_best(&copy, i, UINT32_MAX);
             changed = changed || best != copy.body_of[i];
             copy.body_of[i] = best;
         }

@@ -36,24 +36,27 @@ bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
     float weight = 0.0f;
+    uint16_t n = 0;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         mean = grrl_vec2_add(mean, grrl_vec2_scale(p->keyframe[k].point[slot], w));
         weight += w;
+        n = (uint16_t)(n + (w > 0.0f ? 1 : 0));
     }
-    uint16_t n = 0;
+    if (n == 0)
+        return false;
+    mean = grrl_vec2_scale(mean, 1.0f / weight);
+    float limit = cost_limit(p, n);
     float cost = 0.0f;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes && cost < limit; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         if (w > 0) {
-            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot],
-                                           grrl_vec2_scale(mean, 1.0f / weight)) /
+            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot], mean) /
                        grrl_perception_variance(p, w);
             cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
-            n++;
         }
     }
-    return n > 0 && cost >= cost_limit(p, n);
+    return cost >= limit;
 }
 
 bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body)
@@ -132,10 +135,11 @@ static void try_body(const struct grrl_perception *p, uint16_t slot, uint8_t bod
     bool is_own = body == p->body_of[slot];
     struct grrl_vec2 local = p->shape[slot];
     uint16_t n = 0;
+    float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
     if (!is_own && (!may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
+                    grrl_rigid_is_off(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, enough) ||
                     !grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local)))
         return;
-    float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
     float cost = grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, enough, &n);
     if (n == 0)
         return;
@@ -156,9 +160,10 @@ bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t
     return n >= 2 && cost < cost_limit(p, n);
 }
 
-uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
+uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot, uint32_t changed)
 {
     uint8_t own = p->body_of[slot];
+    uint32_t tried = own < p->n_bodies && (changed >> own & 1u) == 0 ? changed : UINT32_MAX;
     struct candidate cheapest = {GRRL_FEATURE_NONE, 0.0f};
     bool is_table = own == GRRL_FEATURE_BACKGROUND && p->blob_of[slot] == 0;
     float max_limit = cost_limit(p, keyframes_that_saw(p, slot));
@@ -166,7 +171,7 @@ uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
     if (own < p->n_bodies)
         try_body(p, slot, own, max_limit, &cheapest);
     for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) /* the table moves with nothing */
-        if (b != own)
+        if (b != own && (tried >> b & 1u) != 0)
             try_body(p, slot, b, max_limit, &cheapest);
     uint8_t best = cheapest.body;
     if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, slot))
@@ -192,6 +197,7 @@ bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, 
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         struct grrl_vec2 local;
         if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
+            !grrl_rigid_is_off(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, allowed + ROUNDING_COST) &&
             grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
             grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, allowed, &n) <= allowed)
             return true;

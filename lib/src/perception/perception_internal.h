@@ -124,6 +124,11 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
                       const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n);
 
+/* Whether the cost of a slot exceeds `enough` for sure, wherever its place. Cheap; often false for
+ * costs that do. */
+bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
+                       const struct grrl_perception_pose *poses, size_t stride, float enough);
+
 #define GRRL_COST_ANY 1e9f /* enough for no sum */
 
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
@@ -193,8 +198,12 @@ bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body);
  * moved. */
 bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* The body a feature moves with, or GRRL_FEATURE_.. */
-uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
+/*
+ * The body a feature moves with, or GRRL_FEATURE_.. Bit b of `changed`: body b has changed since
+ * this was last found for the feature. The others did not win then, and do not win now unless its
+ * own body has changed.
+ */
+uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot, uint32_t changed);
 
 /* Whether an unassigned feature moves with `body`; both must be visible in at least two keyframes.
  */
@@ -254,7 +263,8 @@ struct grrl_joint_fit {
 /* The evidence for a joint between bodies a < b. */
 struct grrl_joint_evidence {
     float weight; /* gain over free motion in chi squared */
-    float order;  /* gain over independent motion in chi squared, less a cost for distance */
+    float order;  /* gain over independent motion in chi squared, less a cost for distance; if it is
+                     a joint */
     float odds;   /* gain over the other type in chi squared */
     float p[3];   /* probabilities: revolute, prismatic, free */
     uint8_t a;

@@ -11,6 +11,9 @@
  * wrong instead. */
 #define OFF_SHARE 3
 
+/* Beyond GRRL_COST_CAP by more than rounding. */
+#define OFF_COST (1.1f * GRRL_COST_CAP)
+
 /* A feature more in a keyframe counts as much as this many frames averaged, of all its features. */
 #define SEEN 1000u
 
@@ -129,6 +132,12 @@ static void centre(const uint16_t *slots, uint16_t n, struct grrl_vec2 *shape)
     mean = grrl_vec2_scale(mean, 1.0f / (float)n);
     for (uint16_t i = 0; i < n; i++)
         shape[slots[i]] = grrl_vec2_sub(shape[slots[i]], mean);
+}
+
+static bool sees(const struct grrl_perception *p, uint8_t k, uint16_t slot,
+                 const struct grrl_perception_pose *poses, size_t stride)
+{
+    return p->keyframe[k].weight[slot] > 0 && poses[k * stride].weight > 0.0f;
 }
 
 bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
@@ -282,12 +291,21 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
     }
 }
 
+/* Variance of a residual per axis: of the point, the place and the turn of the body. */
+static inline float residual_variance(const struct grrl_perception *p, uint8_t weight,
+                                      const struct grrl_perception_pose *pose, float lever2)
+{
+    float noise2 = p->config.noise_m * p->config.noise_m;
+    return grrl_perception_variance(p, weight) + noise2 / pose->weight +
+           0.5f * noise2 * lever2 / (pose->inertia + GRRL_LEAST_INERTIA);
+}
+
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
                       const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n)
 {
     float cost = 0.0f;
-    float noise2 = p->config.noise_m * p->config.noise_m;
+    float lever2 = grrl_vec2_dot(local, local);
     uint16_t count = 0;
     for (uint8_t k = 0; k < p->n_keyframes && cost <= enough; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
@@ -295,16 +313,46 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
         if (w == 0 || !(pose->weight > 0.0f))
             continue;
         struct grrl_vec2 r = grrl_vec2_sub(p->keyframe[k].point[slot], grrl_to_world(pose, local));
-        float lever2 = grrl_vec2_dot(local, local);
-        float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
-                         0.5f * noise2 * lever2 / (pose->inertia + GRRL_LEAST_INERTIA);
-        float d2 = grrl_vec2_dot(r, r) / variance;
+        float d2 = grrl_vec2_dot(r, r) / residual_variance(p, w, pose, lever2);
         cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
         count++;
     }
     if (cost <= enough)
         *n = count;
     return cost;
+}
+
+/*
+ * Let two keyframes place a feature at q and r on a body, and let m be any place for both. One of q
+ * and r is at least half their distance h off m, and the lever |m| is at most |q| + h for h = |q -
+ * m|. If h is beyond the cap at that lever, which (a + b)^2 <= 2 a^2 + 2 b^2 bounds, then that
+ * keyframe costs as much as the cap. The pairs are the first and the last keyframe, then those
+ * between them.
+ */
+bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
+                       const struct grrl_perception_pose *poses, size_t stride, float enough)
+{
+    uint8_t k[2] = {0, p->n_keyframes};
+    float least = 0.0f;
+    for (; least <= enough && !p->config.sizes_change; least += GRRL_COST_CAP) {
+        struct grrl_vec2 q[2];
+        while (k[0] < k[1] && !sees(p, k[0], slot, poses, stride))
+            k[0]++;
+        do {
+            if (k[1] <= k[0] + 1)
+                return false;
+        } while (!sees(p, --k[1], slot, poses, stride));
+        for (int i = 0; i < 2; i++)
+            q[i] = grrl_to_local(&poses[k[i] * stride], p->keyframe[k[i]].point[slot]);
+        float half2 = 0.25f * grrl_vec2_distance2(q[0], q[1]);
+        for (int i = 0; i < 2; i++)
+            if (half2 < OFF_COST * residual_variance(p, p->keyframe[k[i]].weight[slot],
+                                                     &poses[k[i] * stride],
+                                                     2.0f * (grrl_vec2_dot(q[i], q[i]) + half2)))
+                return false;
+        k[0]++;
+    }
+    return least > enough;
 }
 
 uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots)
