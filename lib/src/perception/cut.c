@@ -19,14 +19,14 @@
  * true boundary, and features it leaves on the wrong side are reassigned. */
 #define DIRECTIONS 6
 
-/* Directions swept at a time, which share the residuals but take 6 bytes of stack a feature each,
- * and partial sums examined at a time, in a loop that becomes vectors where there are some. The
- * results are the same. */
+/* Directions swept at a time, which share the terms of all features but take 6 bytes of stack a
+ * feature each, and partial sums examined at a time, in a loop that becomes vectors where there are
+ * some. The results are the same. */
 #if defined(__SSE2__) || defined(__ARM_NEON)
 #define ABREAST 6
 #define LANES 8
 #else
-#define ABREAST 3
+#define ABREAST 2
 #define LANES 1
 #endif
 
@@ -90,41 +90,32 @@ struct whole {
     size_t stride;
 };
 
-/* How far a feature is off in one keyframe; without weight if it was not seen, or is farther off
- * than motion can explain. */
-struct residual {
-    float w; /* 1 / variance */
-    struct grrl_vec2 d;
-};
-
-static struct residual residual_of(const struct grrl_perception *p, const struct whole *t,
-                                   uint16_t slot, uint8_t k)
+/* The terms of one feature in one keyframe; zero if it was not seen, or is farther off than motion
+ * can explain. */
+static struct part_sum terms_of(const struct grrl_perception *p, const struct whole *t,
+                                uint16_t slot, uint8_t k)
 {
-    struct residual none = {0};
+    struct part_sum none = {0};
     uint8_t weight = p->keyframe[k].weight[slot];
     const struct grrl_perception_pose *pose = &t->pose[k * t->stride];
     if (weight == 0 || !(pose->weight > 0.0f))
         return none;
-    struct grrl_vec2 local = grrl_to_local(pose, p->keyframe[k].point[slot]);
-    struct grrl_vec2 d = grrl_vec2_sub(local, t->shape[slot]);
+    struct grrl_vec2 q = t->shape[slot];
+    struct grrl_vec2 d = grrl_vec2_sub(grrl_to_local(pose, p->keyframe[k].point[slot]), q);
     float reach = p->config.jump_m;
     if (grrl_vec2_dot(d, d) > reach * reach)
         return none;
-    return (struct residual){1.0f / grrl_perception_variance(p, weight), d};
+    float w = 1.0f / grrl_perception_variance(p, weight);
+    return (struct part_sum){w, grrl_vec2_scale(q, w), grrl_vec2_scale(d, w),
+                             w * grrl_vec2_dot(q, q), w * grrl_vec2_cross(q, d)};
 }
 
-static void find_residuals(const struct grrl_perception *p, const struct whole *t, uint8_t k,
-                           struct residual *residual)
+/* Of all features, by slot. */
+static void find_terms(const struct grrl_perception *p, const struct whole *t, uint8_t k,
+                       struct part_sum *terms)
 {
     for (uint16_t i = 0; i < t->n; i++)
-        residual[t->slot[i]] = residual_of(p, t, t->slot[i], k);
-}
-
-/* The terms of one feature in one keyframe. */
-static inline struct part_sum terms(const struct residual *r, struct grrl_vec2 q)
-{
-    return (struct part_sum){r->w, grrl_vec2_scale(q, r->w), grrl_vec2_scale(r->d, r->w),
-                             r->w * grrl_vec2_dot(q, q), r->w * grrl_vec2_cross(q, r->d)};
+        terms[t->slot[i]] = terms_of(p, t, t->slot[i], k);
 }
 
 static void sort_along(const struct whole *t, struct grrl_vec2 direction, uint16_t *slots,
@@ -144,17 +135,16 @@ static void sort_along(const struct whole *t, struct grrl_vec2 direction, uint16
 
 /* What the present parts save in one keyframe, the features of `body` and the others; *all: the sum
  * over both. */
-static float saved_as_is(const struct whole *t, const struct residual *residual,
+static float saved_as_is(const struct whole *t, const struct part_sum *terms,
                          const uint8_t *body_of, uint8_t body, struct part_sum *all)
 {
     struct part_sum part = {0};
     *all = (struct part_sum){0};
     for (uint16_t i = 0; i < t->n; i++) {
         uint16_t slot = t->slot[i];
-        struct part_sum one = terms(&residual[slot], t->shape[slot]);
-        add(all, &one);
+        add(all, &terms[slot]);
         if (body_of[slot] == body)
-            add(&part, &one);
+            add(&part, &terms[slot]);
     }
     return saved_by_both(&part, all);
 }
@@ -203,19 +193,16 @@ static inline struct part_sum lane(const struct lanes *lanes, uint16_t j)
 }
 
 /* Adds what one keyframe saves. Totals of parts that are too small mean nothing. */
-static void sweep_keyframe(const struct whole *t, const struct residual *residual,
-                           const struct part_sum *all, uint16_t end, struct sweep *sweep)
+static void sweep_keyframe(const struct part_sum *terms, const struct part_sum *all, uint16_t end,
+                           struct sweep *sweep)
 {
     struct part_sum left = {0};
     const struct part_sum whole = *all;
     for (uint16_t first = 0; first < end; first = (uint16_t)(first + LANES)) {
         struct lanes lanes;
         for (uint16_t j = 0; j < LANES; j++) {
-            if (first + j < end) {
-                uint16_t slot = sweep->order[first + j];
-                struct part_sum one = terms(&residual[slot], t->shape[slot]);
-                add(&left, &one);
-            }
+            if (first + j < end)
+                add(&left, &terms[sweep->order[first + j]]);
             put_lane(&lanes, j, &left);
         }
         for (uint16_t j = 0; j < LANES; j++) {
@@ -241,20 +228,21 @@ static void begin_sweeps(const struct whole *t, struct grrl_vec2 *direction, str
 static float sweep_all(const struct grrl_perception *p, const struct whole *t, uint8_t body,
                        struct sweep *sweeps)
 {
-    struct residual residual[GRRL_MAX_FEATURES]; /* by slot */
+    struct part_sum terms[GRRL_MAX_FEATURES];
     uint16_t least = p->config.min_features;
     uint16_t end = t->n > least ? (uint16_t)(t->n - least) : 0;
     float now = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         struct part_sum all;
-        find_residuals(p, t, k, residual);
-        now += saved_as_is(t, residual, p->body_of, body, &all);
+        find_terms(p, t, k, terms);
+        now += saved_as_is(t, terms, p->body_of, body, &all);
         for (int s = 0; s < ABREAST; s++)
-            sweep_keyframe(t, residual, &all, end, &sweeps[s]);
+            sweep_keyframe(terms, &all, end, &sweeps[s]);
     }
     return now;
 }
 
+/* part: NULL if only the gain matters. */
 static float best_cut(const struct grrl_perception *p, const struct whole *t, uint8_t body,
                       uint16_t *part, uint16_t *n_part)
 {
@@ -274,7 +262,8 @@ static float best_cut(const struct grrl_perception *p, const struct whole *t, ui
                 if (i + 1 >= least && sweeps[s].total[i] > best) {
                     best = sweeps[s].total[i];
                     *n_part = (uint16_t)(i + 1);
-                    memcpy(part, sweeps[s].order, *n_part * sizeof *part);
+                    if (part != NULL)
+                        memcpy(part, sweeps[s].order, *n_part * sizeof *part);
                 }
             }
         }
@@ -329,25 +318,24 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
  * before. */
 static float share_out(const struct grrl_perception *p, const struct whole *t, bool *is_left)
 {
-    struct residual residual[GRRL_MAX_FEATURES];
+    struct part_sum terms[GRRL_MAX_FEATURES];
     float excess[GRRL_MAX_FEATURES] = {0.0f}; /* what remains on the left minus on the right */
     float total = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         struct part_sum left = {0};
         struct part_sum all = {0};
-        find_residuals(p, t, k, residual);
+        find_terms(p, t, k, terms);
         for (uint16_t i = 0; i < t->n; i++) {
-            struct part_sum one = terms(&residual[t->slot[i]], t->shape[t->slot[i]]);
-            add(&all, &one);
+            add(&all, &terms[t->slot[i]]);
             if (is_left[i])
-                add(&left, &one);
+                add(&left, &terms[t->slot[i]]);
         }
         total += saved_by_both(&left, &all);
         struct part_sum right = rest_of(&all, &left);
         float rounding = LEAST_SHARE * all.w;
         for (uint16_t i = 0; i < t->n && left.w > rounding && right.w > rounding; i++) {
-            struct part_sum one = terms(&residual[t->slot[i]], t->shape[t->slot[i]]);
-            excess[i] += one.w > 0.0f ? left_over(&left, &one) - left_over(&right, &one) : 0.0f;
+            const struct part_sum *one = &terms[t->slot[i]];
+            excess[i] += one->w > 0.0f ? left_over(&left, one) - left_over(&right, one) : 0.0f;
         }
     }
     for (uint16_t i = 0; i < t->n; i++)
@@ -419,11 +407,10 @@ float grrl_cut_best_cross(const struct grrl_perception *p, const struct grrl_rig
 float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
-    uint16_t part[GRRL_MAX_FEATURES];
     uint16_t n_part;
     uint16_t n = grrl_rigid_slots(p, body, slots);
     const struct whole whole = {slots, n, p->shape, &p->pose[0][body], GRRL_MAX_LINKS};
     float chance = 3.0f * (float)p->n_keyframes; /* what a turn and a shift save by chance */
-    float gain = best_cut(p, &whole, body, part, &n_part) / p->config.slack;
+    float gain = best_cut(p, &whole, body, NULL, &n_part) / p->config.slack;
     return gain > chance ? (gain - chance) / grrl_sqrt(2.0f * chance) : 0.0f;
 }

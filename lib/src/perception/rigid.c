@@ -144,13 +144,15 @@ bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       const struct grrl_perception_pose *poses, size_t stride,
                       struct grrl_vec2 *local)
 {
+    const bool grows = p->config.sizes_change; /* otherwise it is quicker */
     struct grrl_vec2 sum = {0.0f, 0.0f};
     float weight = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w > 0.0f && pose->weight > 0.0f) {
-            struct grrl_vec2 q = grrl_to_local(pose, p->keyframe[k].point[slot]);
+            struct grrl_vec2 q = grows ? grrl_to_local(pose, p->keyframe[k].point[slot])
+                                       : grrl_untransform(pose->pose, p->keyframe[k].point[slot]);
             sum = grrl_vec2_add(sum, grrl_vec2_scale(q, w));
             weight += w;
         }
@@ -322,6 +324,20 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
     return cost;
 }
 
+/* The squared distance beyond which a keyframe costs the cap, for a lever of twice half_lever2. */
+static float capped2(const struct grrl_perception *p, uint16_t slot, uint8_t k,
+                     const struct grrl_perception_pose *poses, size_t stride, float half_lever2)
+{
+    return OFF_COST * residual_variance(p, p->keyframe[k].weight[slot], &poses[k * stride],
+                                        2.0f * half_lever2);
+}
+
+static struct grrl_vec2 local_in(const struct grrl_perception *p, uint16_t slot, uint8_t k,
+                                 const struct grrl_perception_pose *poses, size_t stride)
+{
+    return grrl_untransform(poses[k * stride].pose, p->keyframe[k].point[slot]);
+}
+
 /*
  * Let two keyframes place a feature at q and r on a body, and let m be any place for both. One of q
  * and r is at least half their distance h off m, and the lever |m| is at most |q| + h for h = |q -
@@ -332,25 +348,24 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
 bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
                        const struct grrl_perception_pose *poses, size_t stride, float enough)
 {
-    uint8_t k[2] = {0, p->n_keyframes};
+    uint8_t first = 0;
+    uint8_t end = p->n_keyframes;
     float least = 0.0f;
     for (; least <= enough && !p->config.sizes_change; least += GRRL_COST_CAP) {
-        struct grrl_vec2 q[2];
-        while (k[0] < k[1] && !sees(p, k[0], slot, poses, stride))
-            k[0]++;
-        do {
-            if (k[1] <= k[0] + 1)
-                return false;
-        } while (!sees(p, --k[1], slot, poses, stride));
-        for (int i = 0; i < 2; i++)
-            q[i] = grrl_to_local(&poses[k[i] * stride], p->keyframe[k[i]].point[slot]);
-        float half2 = 0.25f * grrl_vec2_distance2(q[0], q[1]);
-        for (int i = 0; i < 2; i++)
-            if (half2 < OFF_COST * residual_variance(p, p->keyframe[k[i]].weight[slot],
-                                                     &poses[k[i] * stride],
-                                                     2.0f * (grrl_vec2_dot(q[i], q[i]) + half2)))
-                return false;
-        k[0]++;
+        while (first < end && !sees(p, first, slot, poses, stride))
+            first++;
+        while (first < end && !sees(p, (uint8_t)(end - 1), slot, poses, stride))
+            end--;
+        if (first + 1 >= end)
+            return false;
+        uint8_t last = --end;
+        struct grrl_vec2 q = local_in(p, slot, first, poses, stride);
+        struct grrl_vec2 r = local_in(p, slot, last, poses, stride);
+        float half2 = 0.25f * grrl_vec2_distance2(q, r);
+        if (half2 < capped2(p, slot, first, poses, stride, grrl_vec2_dot(q, q) + half2) ||
+            half2 < capped2(p, slot, last, poses, stride, grrl_vec2_dot(r, r) + half2))
+            return false;
+        first++;
     }
     return least > enough;
 }
