@@ -136,8 +136,8 @@ static void try_body(const struct grrl_perception *p, uint16_t slot, uint8_t bod
     struct grrl_vec2 local = p->shape[slot];
     uint16_t n = 0;
     float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
-    if (!is_own && (!may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
-                    grrl_rigid_is_off(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, enough) ||
+    if (!is_own && (grrl_rigid_is_off(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, enough) ||
+                    !may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
                     !grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local)))
         return;
     float cost = grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, enough, &n);
@@ -196,8 +196,9 @@ bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, 
                     2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         struct grrl_vec2 local;
-        if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
+        if (b != own &&
             !grrl_rigid_is_off(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, allowed + ROUNDING_COST) &&
+            may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
             grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
             grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, allowed, &n) <= allowed)
             return true;
