@@ -228,8 +228,8 @@ void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
                          struct grrl_rigid_group *together);
 
 /* Evidence for relative motion of two bodies, in chi squared: what separate poses save in each
- * keyframe beyond the cost of their parameters. */
-float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b);
+ * keyframe beyond the cost of their parameters. A sum that has reached `enough` is not finished. */
+float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b, float enough);
 
 /* Whether two bodies may be one: their relative motion is in no keyframe significant, or is below
  * the joint detection threshold. */
