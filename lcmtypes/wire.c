@@ -321,7 +321,7 @@ static bool all_in_range(const struct field *field, const unsigned char *values,
     } else if (field->kind == I32) {
         const int32_t low = (int32_t)field->range[0];
         const int32_t high = (int32_t)field->range[1];
-        for (uint32_t i = 0; i < n; i++) {
+        for (uint32_t i = 0; i < n && (low > INT32_MIN || high < INT32_MAX); i++) {
             int32_t value;
             memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
             good &= (unsigned)(value >= low) & (unsigned)(value <= high);

@@ -41,7 +41,8 @@ static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uin
     float weight = 0.0f;
     struct grrl_vec2 world = {0.0f, 0.0f};
     struct grrl_vec2 local = {0.0f, 0.0f};
-    float ws[GRRL_MAX_FEATURES], qx[GRRL_MAX_FEATURES], qy[GRRL_MAX_FEATURES], xx[GRRL_MAX_FEATURES], xy[GRRL_MAX_FEATURES];
+    float ws[GRRL_MAX_FEATURES], qx[GRRL_MAX_FEATURES], qy[GRRL_MAX_FEATURES],
+        xx[GRRL_MAX_FEATURES], xy[GRRL_MAX_FEATURES];
     unsigned seen = 0;
     for (uint16_t i = 0; i < n; i++) {
         float w = (float)key->weight[slots[i]];
@@ -66,11 +67,11 @@ static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uin
     float across = 0.0f;
     float inertia = 0.0f;
     for (unsigned i = 0; i < seen; i++) {
-            struct grrl_vec2 q = grrl_vec2_sub((struct grrl_vec2){qx[i],qy[i]}, local);
-            struct grrl_vec2 x = grrl_vec2_sub((struct grrl_vec2){xx[i],xy[i]}, world);
-            along += ws[i] * grrl_vec2_dot(q, x);
-            across += ws[i] * grrl_vec2_cross(q, x);
-            inertia += ws[i] * grrl_vec2_dot(q, q);
+        struct grrl_vec2 q = grrl_vec2_sub((struct grrl_vec2){qx[i], qy[i]}, local);
+        struct grrl_vec2 x = grrl_vec2_sub((struct grrl_vec2){xx[i], xy[i]}, world);
+        along += ws[i] * grrl_vec2_dot(q, x);
+        across += ws[i] * grrl_vec2_cross(q, x);
+        inertia += ws[i] * grrl_vec2_dot(q, q);
     }
     float length = grrl_sqrt(along * along + across * across);
     if (!(length > 0.0f))
