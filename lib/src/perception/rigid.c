@@ -32,46 +32,69 @@ float grrl_rigid_growth(const struct grrl_perception *p, float length, float ine
     return growth > LEAST_GROWTH ? growth : LEAST_GROWTH;
 }
 
+/* The points of a body that one keyframe saw, in arrays that compilers turn into vectors. */
+struct sightings {
+    uint16_t n;
+    float w[GRRL_MAX_FEATURES];
+    float local_x[GRRL_MAX_FEATURES];
+    float local_y[GRRL_MAX_FEATURES];
+    float world_x[GRRL_MAX_FEATURES];
+    float world_y[GRRL_MAX_FEATURES];
+    float weight;           /* sum of w */
+    struct grrl_vec2 local; /* weighted sums */
+    struct grrl_vec2 world;
+};
+
+static void gather(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
+                   const struct grrl_vec2 *shape, struct sightings *seen)
+{
+    struct grrl_vec2 local = {0.0f, 0.0f};
+    struct grrl_vec2 world = {0.0f, 0.0f};
+    float weight = 0.0f;
+    uint16_t count = 0;
+    for (uint16_t i = 0; i < n; i++) {
+        float w = (float)key->weight[slots[i]];
+        if (w > 0.0f) {
+            struct grrl_vec2 q = shape[slots[i]];
+            struct grrl_vec2 x = key->point[slots[i]];
+            seen->w[count] = w;
+            seen->local_x[count] = q.x;
+            seen->local_y[count] = q.y;
+            seen->world_x[count] = x.x;
+            seen->world_y[count] = x.y;
+            count++;
+            weight += w;
+            local = grrl_vec2_add(local, grrl_vec2_scale(q, w));
+            world = grrl_vec2_add(world, grrl_vec2_scale(x, w));
+        }
+    }
+    seen->n = count;
+    seen->weight = weight;
+    seen->local = local;
+    seen->world = world;
+}
+
 /* Least-squares pose of weighted points (Umeyama 1991, in the plane: no trigonometry needed). */
 static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
                            uint16_t n, const struct grrl_vec2 *shape, bool grows,
                            struct grrl_perception_pose *out)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[k];
-    float weight = 0.0f;
-    struct grrl_vec2 world = {0.0f, 0.0f};
-    struct grrl_vec2 local = {0.0f, 0.0f};
-    float ws[GRRL_MAX_FEATURES], qx[GRRL_MAX_FEATURES], qy[GRRL_MAX_FEATURES],
-        xx[GRRL_MAX_FEATURES], xy[GRRL_MAX_FEATURES];
-    unsigned seen = 0;
-    for (uint16_t i = 0; i < n; i++) {
-        float w = (float)key->weight[slots[i]];
-        if (w > 0.0f) {
-            ws[seen] = w;
-            qx[seen] = shape[slots[i]].x;
-            qy[seen] = shape[slots[i]].y;
-            xx[seen] = key->point[slots[i]].x;
-            xy[seen] = key->point[slots[i]].y;
-            seen++;
-            weight += w;
-            world = grrl_vec2_add(world, grrl_vec2_scale(key->point[slots[i]], w));
-            local = grrl_vec2_add(local, grrl_vec2_scale(shape[slots[i]], w));
-        }
-    }
+    struct sightings seen;
+    gather(&p->keyframe[k], slots, n, shape, &seen);
     out->weight = 0.0f;
-    if (seen < 2)
+    if (seen.n < 2)
         return;
-    world = grrl_vec2_scale(world, 1.0f / weight);
-    local = grrl_vec2_scale(local, 1.0f / weight);
+    const struct grrl_vec2 local = grrl_vec2_scale(seen.local, 1.0f / seen.weight);
+    const struct grrl_vec2 world = grrl_vec2_scale(seen.world, 1.0f / seen.weight);
     float along = 0.0f;
     float across = 0.0f;
     float inertia = 0.0f;
-    for (unsigned i = 0; i < seen; i++) {
-        struct grrl_vec2 q = grrl_vec2_sub((struct grrl_vec2){qx[i], qy[i]}, local);
-        struct grrl_vec2 x = grrl_vec2_sub((struct grrl_vec2){xx[i], xy[i]}, world);
-        along += ws[i] * grrl_vec2_dot(q, x);
-        across += ws[i] * grrl_vec2_cross(q, x);
-        inertia += ws[i] * grrl_vec2_dot(q, q);
+    for (uint16_t i = 0; i < seen.n; i++) {
+        struct grrl_vec2 q = {seen.local_x[i] - local.x, seen.local_y[i] - local.y};
+        struct grrl_vec2 x = {seen.world_x[i] - world.x, seen.world_y[i] - world.y};
+        along += seen.w[i] * grrl_vec2_dot(q, x);
+        across += seen.w[i] * grrl_vec2_cross(q, x);
+        inertia += seen.w[i] * grrl_vec2_dot(q, q);
     }
     float length = grrl_sqrt(along * along + across * across);
     if (!(length > 0.0f))
@@ -81,7 +104,7 @@ static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uin
     out->growth = grows ? grrl_rigid_growth(p, length, inertia) : 0.0f;
     out->pose.p =
         grrl_vec2_sub(world, grrl_rotate(out->pose, grrl_vec2_scale(local, 1.0f + out->growth)));
-    out->weight = weight;
+    out->weight = seen.weight;
     out->inertia = inertia;
 }
 
