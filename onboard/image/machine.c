@@ -1,8 +1,6 @@
 /* The machine-independent part: semihosting, stack, assertions. */
 #include "machine.h"
 
-#include <string.h>
-
 enum {
     SYS_OPEN = 0x01,
     SYS_WRITE0 = 0x04,
@@ -33,9 +31,9 @@ size_t machine_arguments(char *text, size_t capacity)
     return semihost(SYS_GET_CMDLINE, parameters) == 0 ? parameters[1] : 0;
 }
 
-intptr_t machine_open(const char *path)
+intptr_t machine_open(const char *path, size_t length)
 {
-    const uintptr_t parameters[3] = {(uintptr_t)path, 1 /* "rb" */, strlen(path)};
+    const uintptr_t parameters[3] = {(uintptr_t)path, 1 /* "rb" */, length};
     return semihost(SYS_OPEN, parameters);
 }
 

@@ -17,8 +17,8 @@ _Noreturn void machine_exit(uint32_t code);
 /* Copies the command line after the image's name, zero-terminated; returns its length. */
 size_t machine_arguments(char *text, size_t capacity);
 
-/* Returns a negative number if there is no such file. */
-intptr_t machine_open(const char *path);
+/* Returns a negative number if there is no such file. length: of the path. */
+intptr_t machine_open(const char *path, size_t length);
 
 /* Returns the number of bytes read. */
 size_t machine_read(intptr_t file, void *bytes, size_t size);

@@ -122,9 +122,9 @@ static void write_memory(void)
     write_line("evictions", used.evictions);
 }
 
-static int replay(const char *path)
+static int replay(const char *path, size_t length)
 {
-    input.file = machine_open(path);
+    input.file = machine_open(path, length);
     if (input.file < 0) {
         machine_write("there is no such recording\n");
         return EXIT_USAGE;
@@ -182,9 +182,11 @@ int main(void);
 
 int main(void)
 {
-    (void)machine_arguments(arguments, sizeof arguments);
-    const char *first = strchr(arguments, ' ');
-    first = first != NULL ? first + 1 : "";
+    size_t length = machine_arguments(arguments, sizeof arguments);
+    const char *first = arguments; /* after the image's name */
+    while (*first != ' ' && *first != '\0')
+        first++;
+    first += *first == ' ' ? 1 : 0;
     if (machine_is(first, "serve"))
         serve();
     if (strncmp(first, "fault ", 6) == 0) {
@@ -192,7 +194,7 @@ int main(void)
         return EXIT_FINE;
     }
     if (strncmp(first, "replay ", 7) == 0)
-        return replay(first + 7);
+        return replay(first + 7, length - (size_t)(first + 7 - arguments));
     if (machine_is(first, "worst")) {
         write_worst();
         return EXIT_FINE;

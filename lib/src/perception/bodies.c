@@ -98,17 +98,20 @@ static uint32_t bit_of(const struct grrl_perception *p, uint8_t body)
  * *changed: those of the last round, then those of this one. */
 static bool reassign_once(struct grrl_perception *p, uint32_t *changed)
 {
+    struct grrl_assign_origins origins;
     uint32_t before = *changed;
     bool any = false;
     *changed = 0;
+    grrl_assign_find_origins(p, &origins);
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint8_t was = p->body_of[i];
-        uint8_t best = grrl_assign_best(p, i, before | *changed);
+        uint8_t best = grrl_assign_best(p, &origins, i, before | *changed);
         if (was == best)
             continue;
         any = true;
         p->body_of[i] = best;
         *changed |= bit_of(p, was) | bit_of(p, best);
+        grrl_assign_find_origins(p, &origins);
     }
     for (uint8_t b = 0; b < p->n_bodies; b++)
         if ((*changed & bit_of(p, b)) != 0)
@@ -162,10 +165,13 @@ static void dissolve_redundant(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
+        struct grrl_assign_origins origins;
         uint16_t n = grrl_rigid_slots(p, b, slots);
         uint16_t unique = 0;
+        grrl_assign_find_origins(p, &origins);
         for (uint16_t i = 0; i < n && unique < p->config.min_features; i++)
-            unique = (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, slots[i], n) ? 0 : 1));
+            unique =
+                (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, &origins, slots[i], n) ? 0 : 1));
         if (unique < p->config.min_features) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;

@@ -45,10 +45,18 @@ struct part_sum {
     float moment; /* q x d */
 };
 
-static inline void add(struct part_sum *to, const struct part_sum *one)
+/* The terms of one feature: those of a sum, but q itself. */
+struct term {
+    float w;
+    struct grrl_vec2 d;
+    float qq;
+    float moment;
+};
+
+static inline void add(struct part_sum *to, const struct term *one, struct grrl_vec2 q)
 {
     to->w += one->w;
-    to->q = grrl_vec2_add(to->q, one->q);
+    to->q = grrl_vec2_add(to->q, grrl_vec2_scale(q, one->w));
     to->d = grrl_vec2_add(to->d, one->d);
     to->qq += one->qq;
     to->moment += one->moment;
@@ -92,10 +100,10 @@ struct whole {
 
 /* The terms of one feature in one keyframe; zero if it was not seen, or is farther off than motion
  * can explain. */
-static struct part_sum terms_of(const struct grrl_perception *p, const struct whole *t,
-                                uint16_t slot, uint8_t k)
+static struct term term_of(const struct grrl_perception *p, const struct whole *t, uint16_t slot,
+                           uint8_t k)
 {
-    struct part_sum none = {0};
+    struct term none = {0};
     uint8_t weight = p->keyframe[k].weight[slot];
     const struct grrl_perception_pose *pose = &t->pose[k * t->stride];
     if (weight == 0 || !(pose->weight > 0.0f))
@@ -106,16 +114,16 @@ static struct part_sum terms_of(const struct grrl_perception *p, const struct wh
     if (grrl_vec2_dot(d, d) > reach * reach)
         return none;
     float w = 1.0f / grrl_perception_variance(p, weight);
-    return (struct part_sum){w, grrl_vec2_scale(q, w), grrl_vec2_scale(d, w),
-                             w * grrl_vec2_dot(q, q), w * grrl_vec2_cross(q, d)};
+    return (struct term){w, grrl_vec2_scale(d, w), w * grrl_vec2_dot(q, q),
+                         w * grrl_vec2_cross(q, d)};
 }
 
 /* Of all features, by slot. */
 static void find_terms(const struct grrl_perception *p, const struct whole *t, uint8_t k,
-                       struct part_sum *terms)
+                       struct term *terms)
 {
     for (uint16_t i = 0; i < t->n; i++)
-        terms[t->slot[i]] = terms_of(p, t, t->slot[i], k);
+        terms[t->slot[i]] = term_of(p, t, t->slot[i], k);
 }
 
 static void sort_along(const struct whole *t, struct grrl_vec2 direction, uint16_t *slots,
@@ -135,16 +143,16 @@ static void sort_along(const struct whole *t, struct grrl_vec2 direction, uint16
 
 /* What the present parts save in one keyframe, the features of `body` and the others; *all: the sum
  * over both. */
-static float saved_as_is(const struct whole *t, const struct part_sum *terms,
-                         const uint8_t *body_of, uint8_t body, struct part_sum *all)
+static float saved_as_is(const struct whole *t, const struct term *terms, const uint8_t *body_of,
+                         uint8_t body, struct part_sum *all)
 {
     struct part_sum part = {0};
     *all = (struct part_sum){0};
     for (uint16_t i = 0; i < t->n; i++) {
         uint16_t slot = t->slot[i];
-        add(all, &terms[slot]);
+        add(all, &terms[slot], t->shape[slot]);
         if (body_of[slot] == body)
-            add(&part, &terms[slot]);
+            add(&part, &terms[slot], t->shape[slot]);
     }
     return saved_by_both(&part, all);
 }
@@ -193,16 +201,18 @@ static inline struct part_sum lane(const struct lanes *lanes, uint16_t j)
 }
 
 /* Adds what one keyframe saves. Totals of parts that are too small mean nothing. */
-static void sweep_keyframe(const struct part_sum *terms, const struct part_sum *all, uint16_t end,
-                           struct sweep *sweep)
+static void sweep_keyframe(const struct whole *t, const struct term *terms,
+                           const struct part_sum *all, uint16_t end, struct sweep *sweep)
 {
     struct part_sum left = {0};
     const struct part_sum whole = *all;
     for (uint16_t first = 0; first < end; first = (uint16_t)(first + LANES)) {
         struct lanes lanes;
         for (uint16_t j = 0; j < LANES; j++) {
-            if (first + j < end)
-                add(&left, &terms[sweep->order[first + j]]);
+            if (first + j < end) {
+                uint16_t slot = sweep->order[first + j];
+                add(&left, &terms[slot], t->shape[slot]);
+            }
             put_lane(&lanes, j, &left);
         }
         for (uint16_t j = 0; j < LANES; j++) {
@@ -228,7 +238,7 @@ static void begin_sweeps(const struct whole *t, struct grrl_vec2 *direction, str
 static float sweep_all(const struct grrl_perception *p, const struct whole *t, uint8_t body,
                        struct sweep *sweeps)
 {
-    struct part_sum terms[GRRL_MAX_FEATURES];
+    struct term terms[GRRL_MAX_FEATURES];
     uint16_t least = p->config.min_features;
     uint16_t end = t->n > least ? (uint16_t)(t->n - least) : 0;
     float now = 0.0f;
@@ -237,7 +247,7 @@ static float sweep_all(const struct grrl_perception *p, const struct whole *t, u
         find_terms(p, t, k, terms);
         now += saved_as_is(t, terms, p->body_of, body, &all);
         for (int s = 0; s < ABREAST; s++)
-            sweep_keyframe(terms, &all, end, &sweeps[s]);
+            sweep_keyframe(t, terms, &all, end, &sweeps[s]);
     }
     return now;
 }
@@ -300,7 +310,7 @@ static void cross(const struct whole *t, struct grrl_vec2 direction, bool *is_le
 }
 
 /* Chi squared of one feature that remains after a part's turn and shift. */
-static float left_over(const struct part_sum *part, const struct part_sum *one)
+static float left_over(const struct part_sum *part, const struct term *one, struct grrl_vec2 place)
 {
     struct grrl_vec2 mean = grrl_vec2_scale(part->q, 1.0f / part->w);
     struct grrl_vec2 shift = grrl_vec2_scale(part->d, 1.0f / part->w);
@@ -308,7 +318,8 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
     float turn = inertia > LEAST_INERTIA_SHARE * part->qq
                      ? (part->moment - grrl_vec2_cross(part->q, shift)) / inertia
                      : 0.0f;
-    struct grrl_vec2 q = grrl_vec2_sub(grrl_vec2_scale(one->q, 1.0f / one->w), mean);
+    struct grrl_vec2 q =
+        grrl_vec2_sub(grrl_vec2_scale(grrl_vec2_scale(place, one->w), 1.0f / one->w), mean);
     struct grrl_vec2 d = grrl_vec2_sub(grrl_vec2_scale(one->d, 1.0f / one->w), shift);
     struct grrl_vec2 rest = {d.x + turn * q.y, d.y - turn * q.x};
     return one->w * grrl_vec2_dot(rest, rest);
@@ -318,7 +329,7 @@ static float left_over(const struct part_sum *part, const struct part_sum *one)
  * before. */
 static float share_out(const struct grrl_perception *p, const struct whole *t, bool *is_left)
 {
-    struct part_sum terms[GRRL_MAX_FEATURES];
+    struct term terms[GRRL_MAX_FEATURES];
     float excess[GRRL_MAX_FEATURES] = {0.0f}; /* what remains on the left minus on the right */
     float total = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
@@ -326,16 +337,19 @@ static float share_out(const struct grrl_perception *p, const struct whole *t, b
         struct part_sum all = {0};
         find_terms(p, t, k, terms);
         for (uint16_t i = 0; i < t->n; i++) {
-            add(&all, &terms[t->slot[i]]);
+            struct grrl_vec2 q = t->shape[t->slot[i]];
+            add(&all, &terms[t->slot[i]], q);
             if (is_left[i])
-                add(&left, &terms[t->slot[i]]);
+                add(&left, &terms[t->slot[i]], q);
         }
         total += saved_by_both(&left, &all);
         struct part_sum right = rest_of(&all, &left);
         float rounding = LEAST_SHARE * all.w;
         for (uint16_t i = 0; i < t->n && left.w > rounding && right.w > rounding; i++) {
-            const struct part_sum *one = &terms[t->slot[i]];
-            excess[i] += one->w > 0.0f ? left_over(&left, one) - left_over(&right, one) : 0.0f;
+            const struct term *one = &terms[t->slot[i]];
+            struct grrl_vec2 q = t->shape[t->slot[i]];
+            excess[i] +=
+                one->w > 0.0f ? left_over(&left, one, q) - left_over(&right, one, q) : 0.0f;
         }
     }
     for (uint16_t i = 0; i < t->n; i++)
@@ -358,8 +372,8 @@ static bool lie_across(const struct grrl_perception *p, const struct whole *t, u
     struct part_sum side[2] = {{0}};
     for (uint16_t i = 0; i < t->n; i++) {
         struct grrl_vec2 q = t->shape[t->slot[i]];
-        struct part_sum one = {.w = 1.0f, .q = q, .qq = grrl_vec2_dot(q, q)};
-        add(&side[p->body_of[t->slot[i]] == body ? 0 : 1], &one);
+        struct term one = {.w = 1.0f, .qq = grrl_vec2_dot(q, q)};
+        add(&side[p->body_of[t->slot[i]] == body ? 0 : 1], &one, q);
     }
     float radius2 = 0.0f; /* the sum of mean squared radii */
     struct grrl_vec2 apart = {0.0f, 0.0f};

@@ -194,6 +194,15 @@ float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body);
 bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot);
 bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body);
 
+/* Where bodies come from: the blob of each in the first keyframe, 0: none, and whether it has
+ * moved. Up to date until features change sides. */
+struct grrl_assign_origins {
+    uint8_t blob[GRRL_MAX_LINKS];
+    bool has_moved[GRRL_MAX_LINKS];
+};
+
+void grrl_assign_find_origins(const struct grrl_perception *p, struct grrl_assign_origins *origins);
+
 /* Whether features of bodies a and b may share one body: they come from the same blob, or both
  * moved. */
 bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b);
@@ -203,14 +212,17 @@ bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, ui
  * this was last found for the feature. The others did not win then, and do not win now unless its
  * own body has changed.
  */
-uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot, uint32_t changed);
+uint8_t grrl_assign_best(const struct grrl_perception *p, const struct grrl_assign_origins *origins,
+                         uint16_t slot, uint32_t changed);
 
 /* Whether an unassigned feature moves with `body`; both must be visible in at least two keyframes.
  */
 bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body);
 
 /* Whether a feature of a body of n_own features fits some other body as well. */
-bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
+bool grrl_assign_fits_elsewhere(const struct grrl_perception *p,
+                                const struct grrl_assign_origins *origins, uint16_t slot,
+                                uint16_t n_own);
 
 /* apart.c: the range of relative motion of two bodies from rest to rest, and its variances. */
 struct grrl_apart_range {
