@@ -367,9 +367,10 @@ static struct grrl_vec2 local_in(const struct grrl_perception *p, uint16_t slot,
 
 /*
  * Let two keyframes place a feature at q and r on a body, and let m be any place for both. One of q
- * and r is at least half their distance h off m, and the lever |m| is at most |q| + h for h = |q -
- * m|. If h is beyond the cap at that lever, which (a + b)^2 <= 2 a^2 + 2 b^2 bounds, then that
- * keyframe costs as much as the cap. The pairs are the first and the last keyframe, then those
+ * and r, say q, is off m by at least h, half their distance. The lever |m| is at most |q| + |q -
+ * m|, and chi squared grows with |q - m|, so it is at least that of h with a lever of |q| + h,
+ * which is bounded by (a + b)^2 <= 2 a^2 + 2 b^2. If that exceeds the cap for q and for r, one of
+ * the two keyframes costs the cap. The pairs are the first and the last keyframe, then those
  * between them.
  */
 bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
