@@ -24,28 +24,18 @@ static inline unsigned grrl_match_degree(const struct grrl_match_plan *plan, uin
     return degree < GRRL_MATCH_DEGREES ? degree : GRRL_MATCH_DEGREES - 1;
 }
 
-/*
- * Finds one mapping as in grrl_match_find, by a search that needs no plan. GRRL_ERR_UNDECIDED: the
- * budget is used up.
- */
-enum grrl_status grrl_match_quick(enum grrl_match_kind kind, const struct grrl_graph *pattern,
-                                  const struct grrl_graph *target, grrl_label mask, uint32_t budget,
-                                  uint8_t *map);
+/* Whether the search has ended, see match.c. */
+enum { GRRL_MATCH_FINISHED = GRRL_MAX_LINKS };
 
-/* Makes the part of a plan that pays off for a single enumeration: labels, joints, and degrees as
- * the only growing counts. Isomorphism also needs the colours of both. No order, cells or
- * signature. */
-void grrl_match_plan_partly(struct grrl_match_plan *plan, const struct grrl_graph *graph,
-                            grrl_label mask);
-void grrl_match_colour(struct grrl_match_plan *plan);
+/* Prepares the first step of a search; allowed and step are set. */
+void grrl_match_start(struct grrl_match *match, uint32_t candidates);
 
-/* Orders the steps of a pattern outwards from the vertex `first`. */
-void grrl_match_order_from(struct grrl_match_plan *plan, uint8_t first);
+/* The same for a search that chooses its steps on the way, the first of them at this vertex. */
+void grrl_match_start_at(struct grrl_match *match, uint8_t vertex);
 
-/* Like grrl_match_order_from, starting at a vertex that few targets resemble; for plans of
- * grrl_match_plan_partly. */
-void grrl_match_order_partly(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
-                             const struct grrl_match_plan *target);
+/* Orders the steps of a graph outwards from the vertex `first`. */
+void grrl_match_order_from(struct grrl_match_step *step, const struct grrl_graph *graph,
+                           uint8_t first);
 
 /* Between graphs with equal numbers of links and joints, either kind is an isomorphism. */
 enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
