@@ -6,11 +6,11 @@
 
 #include "structure/match_private.h"
 
-/* What a pair must agree in beyond what its candidates guarantee. */
+/* How the candidates of a vertex are found, and what is checked beyond them. */
 enum check {
-    CHECK_COLOURS = GRRL_MATCH_ISOMORPHISM, /* planned: labels and colours */
-    CHECK_COUNTS = GRRL_MATCH_MONOMORPHISM, /* planned: no count of the target may be smaller */
-    CHECK_LABELS                            /* without plans: the labels */
+    CHECK_COLOURS = GRRL_MATCH_ISOMORPHISM, /* planned: by colour; colours and labels are checked */
+    CHECK_NOTHING = GRRL_MATCH_MONOMORPHISM, /* planned: by label and joints */
+    CHECK_LABELS                             /* without plans: by traits; labels are checked */
 };
 
 static bool same_counts(const struct grrl_match_plan *a, const struct grrl_match_plan *b)
@@ -31,15 +31,12 @@ enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
 static inline bool is_feasible(const struct grrl_match *match, uint8_t vertex, uint8_t image,
                                enum check check)
 {
+    if (check == CHECK_NOTHING)
+        return true;
     if (check == CHECK_LABELS)
         return match->side[0]->label[vertex] == match->side[1]->label[image];
-    const struct grrl_match_plan *pattern = match->plan[0];
-    const struct grrl_match_plan *target = match->plan[1];
-    if (check == CHECK_COLOURS)
-        return pattern->colour[vertex] == target->colour[image] &&
-               pattern->label[vertex] == target->label[image];
-    uint32_t left = (target->growing[image] | GRRL_MATCH_GUARDS) - pattern->growing[vertex];
-    return (left & GRRL_MATCH_GUARDS) == GRRL_MATCH_GUARDS;
+    return match->plan[0]->colour[vertex] == match->plan[1]->colour[image] &&
+           match->plan[0]->label[vertex] == match->plan[1]->label[image];
 }
 
 /* Chooses the next step: a neighbour of earlier vertices, those of the last one last, because its
@@ -76,6 +73,8 @@ static inline uint32_t open_step(const struct grrl_match *match, const struct gr
     const struct grrl_graph *target = match->target;
     const uint8_t group = check == CHECK_LABELS ? step->vertex : step->group[check];
     uint32_t candidates = match->allowed[group] & unused;
+    if (check == CHECK_NOTHING)
+        candidates &= match->plan[1]->at_least[step->degrees];
     if (step->parent != GRRL_UNMAPPED)
         candidates &= target->joined[step->type][image[step->parent]];
     for (uint32_t ties = step->ties; ties != 0; ties &= ties - 1u) {
@@ -192,10 +191,9 @@ void grrl_match_start_planned(struct grrl_match *match, enum grrl_match_kind kin
             bool both = at < target->n_labels && target->label[target->label_example[at]] == label;
             match->own_allowed[k] = both ? target->labelled[at] : 0;
         }
-        /* no image restricts the first vertex, so its joints do */
-        uint32_t candidates = match->own_allowed[pattern->label_group[first]];
-        for (int type = 0; type < GRRL_JOINT_TYPES; type++)
-            candidates &= target->at_least[type][grrl_match_degree(pattern, first, type)];
+        const struct grrl_match_step *step = &pattern->step[0];
+        uint32_t candidates =
+            match->own_allowed[step->group[kind]] & target->at_least[step->degrees];
         grrl_match_start(match, candidates);
     }
 }
@@ -241,7 +239,7 @@ static enum grrl_status search_on(struct grrl_match *match)
     if (match->plan[0] == NULL)
         return search(match, CHECK_LABELS);
     return match->kind == GRRL_MATCH_ISOMORPHISM ? search(match, CHECK_COLOURS)
-                                                 : search(match, CHECK_COUNTS);
+                                                 : search(match, CHECK_NOTHING);
 }
 
 enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)

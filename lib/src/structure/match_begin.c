@@ -126,8 +126,7 @@ static inline bool find_domains(const struct grrl_match_side *pattern,
 
 bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
                             const struct grrl_match_side *pattern,
-                            const struct grrl_match_side *target, uint32_t budget,
-                            const uint32_t **allowed)
+                            const struct grrl_match_side *target, uint32_t budget)
 {
     const bool exact = kind == GRRL_MATCH_ISOMORPHISM;
     uint8_t first = 0;
@@ -147,8 +146,6 @@ bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
                 : find_domains(pattern, target, false, domains, &first)))
         return false;
     match->allowed = domains;
-    if (allowed != NULL)
-        *allowed = domains;
     grrl_match_start_at(match, first);
     return true;
 }
@@ -162,5 +159,5 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
         pattern->n > 0 ? grrl_label_masked(pattern->label[0], mask) : GRRL_NO_PROPERTIES;
     grrl_match_side_of(&own[0], pattern, mask, reference);
     grrl_match_side_of(&own[1], target, mask, reference);
-    (void)grrl_match_begin_sides(match, kind, &own[0], &own[1], budget, NULL);
+    (void)grrl_match_begin_sides(match, kind, &own[0], &own[1], budget);
 }

@@ -119,10 +119,12 @@ static void count_surroundings(struct grrl_match_plan *plan)
 static void count_degrees(struct grrl_match_plan *plan)
 {
     memset(plan->at_least, 0, sizeof plan->at_least);
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++)
-        for (uint8_t i = 0; i < plan->graph->n; i++)
-            for (unsigned k = 0; k <= grrl_match_degree(plan, i, type); k++)
-                plan->at_least[type][k] |= grrl_bit(i);
+    for (uint8_t i = 0; i < plan->graph->n; i++) {
+        const unsigned degrees = grrl_match_degrees(plan, i);
+        for (unsigned revolute = 0; revolute <= degrees / 4; revolute++)
+            for (unsigned prismatic = 0; prismatic <= degrees % 4; prismatic++)
+                plan->at_least[revolute * 4 + prismatic] |= grrl_bit(i);
+    }
 }
 
 /* Ranks the different labels by value. */
@@ -206,6 +208,7 @@ static void order_planned(struct grrl_match_plan *plan)
             .vertex = best,
             .parent = from,
             .type = !starts && (graph->joined[GRRL_PRISMATIC][best] & grrl_bit(from)) != 0,
+            .degrees = grrl_match_degrees(plan, best),
             .group = {plan->rank[best], plan->label_group[best]},
             .ties = starts ? 0 : grrl_match_neighbours(graph, best) & placed & ~grrl_bit(from)};
         placed |= grrl_bit(best);

@@ -16,12 +16,40 @@ static inline uint32_t grrl_match_neighbours(const struct grrl_graph *graph, uin
     return graph->joined[GRRL_REVOLUTE][vertex] | graph->joined[GRRL_PRISMATIC][vertex];
 }
 
-/* A vertex's joints of a type, at most GRRL_MATCH_DEGREES - 1. */
-static inline unsigned grrl_match_degree(const struct grrl_match_plan *plan, uint8_t vertex,
-                                         int type)
+/* A vertex's joints as a number: 4 for each revolute one, 1 for each prismatic one, at most 3 of
+ * each type. */
+static inline uint8_t grrl_match_degrees(const struct grrl_match_plan *plan, uint8_t vertex)
 {
-    unsigned degree = plan->growing[vertex] >> 8 * type & 0xffu;
-    return degree < GRRL_MATCH_DEGREES ? degree : GRRL_MATCH_DEGREES - 1;
+    unsigned revolute = plan->growing[vertex] & 0xffu;
+    unsigned prismatic = plan->growing[vertex] >> 8 & 0xffu;
+    return (uint8_t)((revolute < 3 ? revolute : 3) * 4 + (prismatic < 3 ? prismatic : 3));
+}
+
+/* Target vertices that could be the image of a pattern vertex, judged by their traits. */
+static inline uint32_t grrl_match_images(const struct grrl_match_side *pattern, uint8_t vertex,
+                                         const struct grrl_match_side *target, bool exact)
+{
+    uint32_t images = grrl_bits_below(target->graph->n) &
+                      (target->alike ^ ((pattern->alike >> vertex & 1u) - 1u));
+    for (int k = 0; k < GRRL_MATCH_TRAITS; k++) {
+        uint32_t lacks = (pattern->trait[k] >> vertex & 1u) - 1u;
+        images &= exact ? target->trait[k] ^ lacks : target->trait[k] | lacks;
+    }
+    return images;
+}
+
+/* Pattern vertices whose image could be a target vertex. */
+static inline uint32_t grrl_match_preimages(const struct grrl_match_side *pattern,
+                                            const struct grrl_match_side *target, uint8_t vertex,
+                                            bool exact)
+{
+    uint32_t preimages = grrl_bits_below(pattern->graph->n) &
+                         (pattern->alike ^ ((target->alike >> vertex & 1u) - 1u));
+    for (int k = 0; k < GRRL_MATCH_TRAITS; k++) {
+        uint32_t has = 0u - (target->trait[k] >> vertex & 1u);
+        preimages &= exact ? ~(pattern->trait[k] ^ has) : ~pattern->trait[k] | has;
+    }
+    return preimages;
 }
 
 /* Whether the search has ended, see match.c. */

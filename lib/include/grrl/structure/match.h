@@ -37,8 +37,8 @@ enum { GRRL_UNMAPPED = 0xff };
 #define GRRL_MATCH_BUDGET 20000
 #endif
 
-/* Degrees told apart where a search starts: 0, 1, 2, and 3 or more joints of a type. */
-enum { GRRL_MATCH_DEGREES = 4 };
+/* Numbers of joints told apart: 0, 1, 2, and 3 or more of each type. */
+enum { GRRL_MATCH_DEGREES = 4 * 4 };
 
 /* One pattern vertex, in search order. */
 struct grrl_match_step {
@@ -46,6 +46,7 @@ struct grrl_match_step {
     uint8_t vertex;
     uint8_t parent;   /* an earlier neighbour; GRRL_UNMAPPED at the start of a component */
     uint8_t type;     /* of the joint to it */
+    uint8_t degrees;  /* joints of both types, see match_private.h */
     uint8_t group[2]; /* per kind: of the vertices with the same targets, see grrl_match.allowed */
     uint32_t ties;    /* further earlier neighbours: the vertex closes loops */
 };
@@ -66,8 +67,8 @@ struct grrl_match_plan {
     uint32_t colour[GRRL_MAX_LINKS];   /* per vertex: hash of its label and surroundings */
     uint32_t growing[GRRL_MAX_LINKS]; /* per vertex: four counts, never smaller in a larger graph */
     uint32_t cell[GRRL_MAX_LINKS];    /* per rank: the vertices of that colour */
-    /* per type and degree: the vertices with at least so many joints */
-    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MATCH_DEGREES];
+    uint32_t
+        at_least[GRRL_MATCH_DEGREES]; /* the vertices with at least so many joints of each type */
     struct grrl_match_step step[GRRL_MAX_LINKS];
 };
 
@@ -154,16 +155,13 @@ void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
 /*
  * The same for a graph that is matched with many others: grrl_match_side_of prepares its side once.
  * Both sides must be made under the same mask and reference, any label under that mask; one that
- * some vertices have and others have not rules out most. False: there is no mapping, which is
- * certain. Otherwise *allowed, if not NULL, is set to one set of targets per pattern vertex; every
- * mapping maps a vertex to one of these.
+ * some vertices have and others have not rules out most. False: there is no mapping.
  */
 void grrl_match_side_of(struct grrl_match_side *side, const struct grrl_graph *graph,
                         grrl_label mask, grrl_label reference);
 bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
                             const struct grrl_match_side *pattern,
-                            const struct grrl_match_side *target, uint32_t budget,
-                            const uint32_t **allowed);
+                            const struct grrl_match_side *target, uint32_t budget);
 
 /* Like grrl_match_begin, with plans made under the same mask, which must outlive the search. */
 void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,

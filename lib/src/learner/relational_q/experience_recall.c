@@ -4,6 +4,7 @@
 #include "base/bits.h"
 #include "learner/relational_q/closest.h"
 #include "learner/relational_q/experience_private.h"
+#include "structure/match_private.h"
 
 /*
  * How many mappings of one search to examine before searching for each wanted pair of links
@@ -26,18 +27,19 @@ struct job {
     const struct grrl_experience_state *described; /* the current state as it would be stored */
     grrl_label places;                             /* its properties in use, as mask bytes */
     struct grrl_recall *recall;
-    uint32_t budget;                /* steps left for the stored state */
-    uint32_t steps;                 /* steps left for sub-structures, over the whole recall */
-    uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
-    struct our_side ours[2];        /* with all properties, and with some dropped */
+    uint32_t budget;                   /* steps left for the stored state */
+    uint32_t steps;                    /* steps left for sub-structures, over the whole recall */
+    uint32_t open[GRRL_DIRECTIONS];    /* per direction: links whose entry may still improve */
+    uint32_t unknown[GRRL_DIRECTIONS]; /* those of them without an entry */
+    struct our_side ours[2];           /* with all properties, and with some dropped */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of the stored state */
     enum grrl_match_kind kind;
     bool stored_is_pattern; /* false: the current one is the pattern */
     grrl_label mask;
-    const struct grrl_match_side *pattern;
-    const struct grrl_match_side *target;
+    const struct grrl_match_side *our; /* side of the current state */
+    const struct grrl_match_side *theirs;
     struct grrl_recall_entry closeness; /* level, distance and dropped of all its matches */
 };
 
@@ -70,31 +72,43 @@ static bool improves(const struct job *job, uint32_t experience,
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
-/* Finds the bindings that would give some action a closer experience; false if there are none.
- * allowed: per link of the pattern, the links of the target it could be mapped to. */
-static bool wanted_bindings(const struct job *job, const uint32_t *allowed, struct binding *wanted)
+/* Current links with this label under the job's mask. */
+static uint32_t labelled(const struct job *job, grrl_label label)
 {
+    uint32_t links = 0;
+    for (uint8_t c = 0; c < job->current->n; c++)
+        if (grrl_label_masked(job->current->label[c], job->mask) == label)
+            links |= grrl_bit(c);
+    return links;
+}
+
+/* Finds the bindings that would give some action a closer experience; false if there are none. */
+static bool wanted_bindings(const struct job *job, struct binding *wanted)
+{
+    const bool exact = job->kind == GRRL_MATCH_ISOMORPHISM;
+    uint32_t all = 0;
     clear_binding(wanted, job->graph.n);
-    bool any = false;
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
         const uint8_t v = experience->link;
-        const grrl_label label = grrl_label_masked(job->graph.label[v], job->mask);
-        uint32_t links = job->open[experience->direction];
-        if (job->stored_is_pattern)
-            links &= allowed[v];
-        for (; links != 0; links &= links - 1u) {
-            uint8_t c = grrl_first_bit(links);
-            if ((job->stored_is_pattern || (allowed[c] >> v & 1u) != 0) &&
-                grrl_label_masked(job->current->label[c], job->mask) == label &&
-                improves(job, i, &job->recall->entry[c][experience->direction])) {
-                wanted->to[v] |= grrl_bit(c);
-                any = true;
-            }
+        const unsigned direction = experience->direction;
+        uint32_t links =
+            job->open[direction] &
+            (job->stored_is_pattern ? grrl_match_images(job->theirs, v, job->our, exact)
+                                    : grrl_match_preimages(job->our, job->theirs, v, exact));
+        if (links != 0 && job->mask != GRRL_NO_PROPERTIES)
+            links &= labelled(job, job->theirs->label[v]);
+        uint32_t known = links & ~job->unknown[direction];
+        for (; known != 0; known &= known - 1u) {
+            uint8_t c = grrl_first_bit(known);
+            if (!improves(job, i, &job->recall->entry[c][direction]))
+                links &= ~grrl_bit(c);
         }
+        wanted->to[v] |= links;
+        all |= links;
     }
-    return any;
+    return all != 0;
 }
 
 static void add_mapping(const struct job *job, const uint8_t *map, struct binding *found)
@@ -131,10 +145,10 @@ static const struct grrl_match_side *our_side(struct job *job)
     return &ours->side;
 }
 
-static bool begin(const struct job *job, struct grrl_match *match, const uint32_t **allowed)
+static bool begin(const struct job *job, struct grrl_match *match)
 {
-    return grrl_match_begin_sides(match, job->kind, job->pattern, job->target, job->budget,
-                                  allowed);
+    return grrl_match_begin_sides(match, job->kind, job->stored_is_pattern ? job->theirs : job->our,
+                                  job->stored_is_pattern ? job->our : job->theirs, job->budget);
 }
 
 /* Searches for a mapping through each wanted pair that none has been found for. */
@@ -148,7 +162,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
                 continue;
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
-            (void)begin(job, &match, NULL); /* as before, when it found domains */
+            (void)begin(job, &match); /* as before, when it found domains */
             grrl_match_fix(&match, job->stored_is_pattern ? v : c, job->stored_is_pattern ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK)
                 add_mapping(job, map, found);
@@ -181,14 +195,12 @@ static void match_stored(struct job *job)
     struct grrl_match match;
     struct binding wanted;
     struct binding found;
-    const uint32_t *allowed;
     if (job->budget == 0)
         return;
-    const struct grrl_match_side *ours = our_side(job);
     grrl_match_side_of(&theirs, &job->graph, job->mask, reference_of(job));
-    job->pattern = job->stored_is_pattern ? &theirs : ours;
-    job->target = job->stored_is_pattern ? ours : &theirs;
-    if (!begin(job, &match, &allowed) || !wanted_bindings(job, allowed, &wanted))
+    job->theirs = &theirs;
+    job->our = our_side(job);
+    if (!wanted_bindings(job, &wanted) || !begin(job, &match))
         return;
     find_bindings(job, &match, &wanted, &found);
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
@@ -202,6 +214,7 @@ static void match_stored(struct job *job)
                 *entry = job->closeness;
                 entry->experience = i;
                 entry->stored_link = experience->link;
+                job->unknown[experience->direction] &= ~(links & (0u - links));
             }
         }
     }
@@ -345,13 +358,8 @@ static bool find_open(struct job *job)
 {
     bool any = false;
     for (int direction = 0; direction < GRRL_DIRECTIONS; direction++) {
-        job->open[direction] = 0;
-        for (uint8_t link = 0; link < job->current->n; link++) {
-            if (job->recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
-                job->open[direction] |= grrl_bit(link);
-                any = true;
-            }
-        }
+        job->open[direction] = job->unknown[direction];
+        any = any || job->open[direction] != 0;
     }
     return any;
 }
@@ -469,7 +477,7 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
                       .places = places_in_use(state),
                       .recall = recall};
     for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
-        job.open[direction] = grrl_bits_below(state->n);
+        job.open[direction] = job.unknown[direction] = grrl_bits_below(state->n);
     match_isomorphic(&job);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE)
         match_parts(&job);
