@@ -395,11 +395,13 @@ static void prefetch_state(const struct grrl_experience_state *state)
     grrl_prefetch(&state->first);
 }
 
+/* Prefetches its links, and its experiences as if they had been made one after another. */
 static void prefetch_links(const struct grrl_experience_store *store,
                            const struct grrl_experience_state *state)
 {
     enum { LINE_BYTES = 64 };
-    grrl_prefetch(&store->experiences[state->first]);
+    for (unsigned i = 0; i < state->experiences && i <= state->first; i += 2)
+        grrl_prefetch(&store->experiences[state->first - i]);
     grrl_prefetch(state->edge);
     for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0])
         grrl_prefetch(&state->label[i]);
