@@ -13,19 +13,6 @@ enum check {
     CHECK_LABELS                             /* without plans: by traits; labels are checked */
 };
 
-static bool same_counts(const struct grrl_match_plan *a, const struct grrl_match_plan *b)
-{
-    return a->graph->n == b->graph->n && a->joints[GRRL_REVOLUTE] == b->joints[GRRL_REVOLUTE] &&
-           a->joints[GRRL_PRISMATIC] == b->joints[GRRL_PRISMATIC];
-}
-
-enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
-                                         const struct grrl_match_plan *pattern,
-                                         const struct grrl_match_plan *target)
-{
-    return same_counts(pattern, target) ? GRRL_MATCH_ISOMORPHISM : kind;
-}
-
 /* An isomorphism needs no check for joints that only the target has: both have the same number of
  * joints. */
 static inline bool is_feasible(const struct grrl_match *match, uint8_t vertex, uint8_t image,
@@ -45,9 +32,9 @@ static inline void add_step(const struct grrl_graph *pattern, struct grrl_match_
                             struct grrl_match_step *step)
 {
     const uint32_t placed = growth->placed;
-    const uint32_t older = growth->frontier & ~placed;
-    const uint32_t all = older | (growth->recent & ~placed);
-    uint32_t choices = older != 0 ? older : all;
+    uint32_t choices = growth->frontier & ~placed;
+    if (choices == 0)
+        choices = growth->recent & ~placed;
     if (choices == 0)
         choices = grrl_bits_below(pattern->n) & ~placed;
     const uint8_t vertex = grrl_first_bit(choices);
@@ -59,7 +46,7 @@ static inline void add_step(const struct grrl_graph *pattern, struct grrl_match_
     step->type = prismatic >> (step->parent & 31u) & 1u;
     step->ties = back & (back - 1u);
     growth->placed = placed | grrl_bit(vertex);
-    growth->frontier = all;
+    growth->frontier |= growth->recent;
     growth->recent = neighbours;
 }
 

@@ -234,13 +234,3 @@ void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *g
     order_planned(plan);
     grrl_signature_of(graph, mask, &plan->monotone);
 }
-
-bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,
-                                const struct grrl_match_plan *target)
-{
-    if (kind == GRRL_MATCH_ISOMORPHISM)
-        return pattern->hash == target->hash && pattern->graph->n == target->graph->n &&
-               memcmp(pattern->joints, target->joints, sizeof target->joints) == 0;
-    return pattern->graph->n <= target->graph->n &&
-           grrl_signature_within(&pattern->monotone, &target->monotone, false);
-}

@@ -4,6 +4,8 @@
 #ifndef GRRL_MATCH_PRIVATE_H
 #define GRRL_MATCH_PRIVATE_H
 
+#include <string.h>
+
 #include "base/bits.h"
 #include "grrl/structure/match.h"
 
@@ -66,17 +68,30 @@ void grrl_match_order_from(struct grrl_match_step *step, const struct grrl_graph
                            uint8_t first);
 
 /* Between graphs with equal numbers of links and joints, either kind is an isomorphism. */
-enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
-                                         const struct grrl_match_plan *pattern,
-                                         const struct grrl_match_plan *target);
+static inline enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
+                                                       const struct grrl_match_plan *pattern,
+                                                       const struct grrl_match_plan *target)
+{
+    bool same = pattern->graph->n == target->graph->n &&
+                memcmp(pattern->joints, target->joints, sizeof target->joints) == 0;
+    return same ? GRRL_MATCH_ISOMORPHISM : kind;
+}
+
+/* A necessary condition, checked before any search; false is certain. */
+static inline bool grrl_match_planned_may_fit(enum grrl_match_kind kind,
+                                              const struct grrl_match_plan *pattern,
+                                              const struct grrl_match_plan *target)
+{
+    if (kind == GRRL_MATCH_ISOMORPHISM)
+        return pattern->hash == target->hash && pattern->graph->n == target->graph->n &&
+               memcmp(pattern->joints, target->joints, sizeof target->joints) == 0;
+    return pattern->graph->n <= target->graph->n &&
+           grrl_signature_within(&pattern->monotone, &target->monotone, false);
+}
 
 /* Like grrl_match_begin_planned, for a kind by grrl_match_kind_for and plans that may fit. */
 void grrl_match_start_planned(struct grrl_match *match, enum grrl_match_kind kind,
                               const struct grrl_match_plan *pattern,
                               const struct grrl_match_plan *target, uint32_t budget);
-
-/* A necessary condition, checked before any search; false is certain. */
-bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,
-                                const struct grrl_match_plan *target);
 
 #endif
