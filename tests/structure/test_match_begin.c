@@ -3,7 +3,7 @@
 #include "structure/match_private.h"
 #include "support.h"
 
-enum { LOOKS = 3 * GRRL_JOINT_TYPES };
+enum { LOOKS = 2 * GRRL_JOINT_TYPES };
 
 static struct grrl_graph random_graph(struct grrl_random *random, uint32_t n_atoms)
 {
@@ -12,7 +12,7 @@ static struct grrl_graph random_graph(struct grrl_random *random, uint32_t n_ato
     return support_graph(random, n, 5 + grrl_random_below(random, 4), loops, n_atoms);
 }
 
-/* Of each type of joint: one to a vertex labelled like the reference, one at all, two. */
+/* Of each type of joint: one to a vertex labelled like the reference, and two. */
 static void look_at(const struct grrl_graph *graph, grrl_label reference, uint8_t vertex,
                     bool *look)
 {
@@ -25,9 +25,8 @@ static void look_at(const struct grrl_graph *graph, grrl_label reference, uint8_
             n_alike += graph->label[i] == reference;
             n_any++;
         }
-        look[3 * type] = n_alike > 0;
-        look[3 * type + 1] = n_any > 0;
-        look[3 * type + 2] = n_any > 1;
+        look[2 * type] = n_alike > 0;
+        look[2 * type + 1] = n_any > 1;
     }
 }
 
@@ -163,7 +162,7 @@ static void test_goes_straight(void **state)
         }
     }
     print_message("%u and %u of %d\n", n_straight[0], n_straight[1], TIMES);
-    assert_true(n_straight[0] > 1750 && n_straight[1] > 1400);
+    assert_true(n_straight[0] > 1600 && n_straight[1] > 1350);
 }
 
 int main(void)

@@ -21,45 +21,49 @@ static inline bool is_feasible(const struct grrl_match *match, uint8_t vertex, u
     if (check == CHECK_NOTHING)
         return true;
     if (check == CHECK_LABELS)
-        return match->side[0]->label[vertex] == match->side[1]->label[image];
+        return match->label[0][vertex] == match->label[1][image];
     return match->plan[0]->colour[vertex] == match->plan[1]->colour[image] &&
            match->plan[0]->label[vertex] == match->plan[1]->label[image];
 }
 
-/* Chooses the next step: a neighbour of earlier vertices, those of the last one last, because its
- * image is known last. */
-static inline void add_step(const struct grrl_graph *pattern, struct grrl_match_growth *growth,
-                            struct grrl_match_step *step)
+/* Chooses the vertex of the next step: a neighbour of mapped vertices, those of the last one last,
+ * because its image is known last. */
+static inline uint8_t choose_vertex(const struct grrl_graph *pattern,
+                                    struct grrl_match_growth *growth)
 {
-    const uint32_t placed = growth->placed;
-    uint32_t choices = growth->frontier & ~placed;
+    uint32_t choices = growth->frontier & ~growth->placed;
     if (choices == 0)
-        choices = growth->recent & ~placed;
+        choices = growth->recent & ~growth->placed;
     if (choices == 0)
-        choices = grrl_bits_below(pattern->n) & ~placed;
-    const uint8_t vertex = grrl_first_bit(choices);
-    const uint32_t prismatic = pattern->joined[GRRL_PRISMATIC][vertex];
-    const uint32_t neighbours = pattern->joined[GRRL_REVOLUTE][vertex] | prismatic;
-    const uint32_t back = neighbours & placed;
-    step->vertex = vertex;
-    step->parent = back != 0 ? grrl_first_bit(back) : GRRL_UNMAPPED;
-    step->type = prismatic >> (step->parent & 31u) & 1u;
-    step->ties = back & (back - 1u);
-    growth->placed = placed | grrl_bit(vertex);
+        choices = grrl_bits_below(pattern->n) & ~growth->placed;
     growth->frontier |= growth->recent;
-    growth->recent = neighbours;
+    growth->deepest++;
+    return grrl_first_bit(choices);
 }
 
-/*
- * The candidate targets of a step: allowed, unused, and joined to the images of all mapped
- * neighbours by joints of the right types.
- */
+/* The candidate targets of a vertex: allowed, unused, and joined to the images of all mapped
+ * neighbours by joints of the right types. */
+static inline uint32_t open_vertex(const struct grrl_match *match, uint8_t vertex,
+                                   const uint8_t *image, struct grrl_match_growth *growth,
+                                   uint32_t unused)
+{
+    const struct grrl_graph *pattern = match->pattern;
+    uint32_t candidates = match->own_allowed[vertex] & unused;
+    const uint32_t prismatic = pattern->joined[GRRL_PRISMATIC][vertex];
+    growth->recent = pattern->joined[GRRL_REVOLUTE][vertex] | prismatic;
+    for (uint32_t back = growth->recent & growth->placed; back != 0; back &= back - 1u) {
+        uint8_t earlier = grrl_first_bit(back);
+        candidates &= match->target->joined[prismatic >> earlier & 1u][image[earlier]];
+    }
+    return candidates;
+}
+
+/* The same for a planned step. */
 static inline uint32_t open_step(const struct grrl_match *match, const struct grrl_match_step *step,
                                  const uint8_t *image, enum check check, uint32_t unused)
 {
     const struct grrl_graph *target = match->target;
-    const uint8_t group = check == CHECK_LABELS ? step->vertex : step->group[check];
-    uint32_t candidates = match->allowed[group] & unused;
+    uint32_t candidates = match->allowed[step->group[check]] & unused;
     if (check == CHECK_NOTHING)
         candidates &= match->plan[1]->at_least[step->degrees];
     if (step->parent != GRRL_UNMAPPED)
@@ -97,6 +101,7 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
             depth--;
             vertex = steps[depth].vertex;
             unused |= grrl_bit(image_of[vertex]);
+            growth.placed &= ~grrl_bit(vertex);
             candidates = match->candidates[depth];
             continue;
         }
@@ -118,12 +123,16 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
         }
         unused &= ~grrl_bit(image);
         depth++;
-        if (check == CHECK_LABELS && depth > growth.deepest) {
-            add_step(match->pattern, &growth, &match->own_step[depth]);
-            growth.deepest = depth;
+        if (check == CHECK_LABELS) {
+            growth.placed |= grrl_bit(vertex);
+            if (depth > growth.deepest)
+                match->own_step[depth].vertex = choose_vertex(match->pattern, &growth);
+            vertex = match->own_step[depth].vertex;
+            candidates = open_vertex(match, vertex, image_of, &growth, unused);
+        } else {
+            vertex = steps[depth].vertex;
+            candidates = open_step(match, &steps[depth], image_of, check, unused);
         }
-        vertex = steps[depth].vertex;
-        candidates = open_step(match, &steps[depth], image_of, check, unused);
     }
     if (check == CHECK_LABELS)
         match->growth = growth;
@@ -146,8 +155,8 @@ void grrl_match_start_at(struct grrl_match *match, uint8_t vertex)
 {
     match->own_step[0] = (struct grrl_match_step){.vertex = vertex, .parent = GRRL_UNMAPPED};
     match->step = match->own_step;
-    match->growth = (struct grrl_match_growth){
-        .placed = grrl_bit(vertex), .recent = grrl_match_neighbours(match->pattern, vertex)};
+    match->growth =
+        (struct grrl_match_growth){.recent = grrl_match_neighbours(match->pattern, vertex)};
     grrl_match_start(match, match->own_allowed[vertex]);
 }
 

@@ -3,19 +3,17 @@
  * prevent nearly every dead end.
  *
  * Bit v of a set tells whether vertex v has a trait: it has the reference label, or joints of some
- * type to any vertex or to one with that label. The sets of both graphs give each pattern vertex
- * its domain, the target vertices with compatible traits. Machines with vector instructions handle
- * four vertices at a time.
+ * type to a vertex with that label, or two and more of some type. The sets of both graphs give each
+ * pattern vertex its domain, the target vertices with compatible traits. Machines with vector
+ * instructions handle four vertices at a time.
  */
 #include <string.h>
 
 #include "structure/match_private.h"
 
-/*
- * The traits of a vertex, for each type of joint: a joint to a vertex with the reference label, any
- * joint, and two or more joints.
- */
-enum { TO_ALIKE, ANY = 2, MORE = 4 };
+/* The traits of a vertex, for each type of joint: a joint to a vertex with the reference label, and
+ * two or more joints. */
+enum { TO_ALIKE, MORE = 2 };
 
 /* a table, because few machines can shift vector lanes by different amounts */
 static const uint32_t bit[32] = {
@@ -39,7 +37,6 @@ static void find_traits(struct grrl_match_side *side, grrl_label reference)
     const unsigned n = graph->n;
     uint32_t alike = 0;
     uint32_t to_alike[GRRL_JOINT_TYPES] = {0};
-    uint32_t any[GRRL_JOINT_TYPES] = {0};
     uint32_t more[GRRL_JOINT_TYPES] = {0};
     for (unsigned i = 0; i < n; i++) {
         const uint32_t is_alike = half_of(side->label[i]) == half ? UINT32_MAX : 0;
@@ -48,15 +45,12 @@ static void find_traits(struct grrl_match_side *side, grrl_label reference)
         alike |= is_alike & bit[i];
         to_alike[0] |= is_alike & r;
         to_alike[1] |= is_alike & p;
-        any[0] |= r; /* with those of the others, as a joint is in two rows */
-        any[1] |= p;
         more[0] |= ((r & (r - 1u)) != 0 ? UINT32_MAX : 0) & bit[i];
         more[1] |= ((p & (p - 1u)) != 0 ? UINT32_MAX : 0) & bit[i];
     }
     side->alike = alike;
     for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
         side->trait[TO_ALIKE + type] = to_alike[type];
-        side->trait[ANY + type] = any[type];
         side->trait[MORE + type] = more[type];
     }
 }
@@ -133,8 +127,8 @@ bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
     match->pattern = pattern->graph;
     match->target = target->graph;
     match->plan[0] = NULL;
-    match->side[0] = pattern;
-    match->side[1] = target;
+    match->label[0] = pattern->label;
+    match->label[1] = target->label;
     match->kind = kind;
     match->budget = budget;
     match->depth = GRRL_MATCH_FINISHED;

@@ -73,7 +73,7 @@ struct grrl_match_plan {
 };
 
 /* Traits of a vertex, see match_begin.c. */
-enum { GRRL_MATCH_TRAITS = 3 * GRRL_JOINT_TYPES };
+enum { GRRL_MATCH_TRAITS = 2 * GRRL_JOINT_TYPES };
 
 /* What a search without plans needs of one graph under a mask. */
 struct grrl_match_side {
@@ -85,13 +85,13 @@ struct grrl_match_side {
     grrl_label masked[GRRL_MAX_LINKS];
 };
 
-/* The vertices of the steps so far, in a search that chooses its steps on the way. */
+/* What a search that chooses its steps on the way knows of them. */
 struct grrl_match_growth {
     /* private */
-    uint32_t placed;
-    uint32_t frontier; /* neighbours of all but the last */
-    uint32_t recent;   /* neighbours of the last */
-    size_t deepest;    /* depth of the last */
+    size_t deepest;    /* depth of the last one chosen */
+    uint32_t recent;   /* neighbours of its vertex */
+    uint32_t frontier; /* neighbours of all others */
+    uint32_t placed;   /* mapped vertices */
 };
 
 struct grrl_match {
@@ -99,7 +99,7 @@ struct grrl_match {
     const struct grrl_graph *pattern;
     const struct grrl_graph *target;
     const struct grrl_match_plan *plan[2]; /* of both, or NULL */
-    const struct grrl_match_side *side[2]; /* of both without plans */
+    const grrl_label *label[2];            /* of both, without plans */
     const uint32_t *allowed;               /* per group of pattern vertices: permitted targets */
     const struct grrl_match_step *step;    /* per depth */
     enum grrl_match_kind kind;
