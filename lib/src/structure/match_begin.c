@@ -114,7 +114,7 @@ static inline bool find_domains(const struct grrl_match_side *pattern,
         int32_t score = (int32_t)(grrl_bit_count(domain) << 8 | v);
         fewest = score < fewest ? score : fewest;
     }
-    *first = (uint8_t)(fewest & 0xff);
+    *first = n > 0 ? (uint8_t)(fewest & 0xff) : 0;
     return fewest > 0xff;
 }
 
@@ -136,6 +136,7 @@ bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
               : pattern->graph->n > target->graph->n)
         return false;
     uint32_t *domains = match->own_allowed;
+    domains[0] = 0; /* for a pattern without vertices */
     if (!(exact ? find_domains(pattern, target, true, domains, &first)
                 : find_domains(pattern, target, false, domains, &first)))
         return false;

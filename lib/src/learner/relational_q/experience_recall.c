@@ -31,7 +31,7 @@ struct job {
     uint32_t steps;                    /* steps left for sub-structures, over the whole recall */
     uint32_t open[GRRL_DIRECTIONS];    /* per direction: links whose entry may still improve */
     uint32_t unknown[GRRL_DIRECTIONS]; /* those of them without an entry */
-    struct our_side ours[2];           /* with all properties, and with some dropped */
+    struct our_side our_sides[2];      /* with all properties, and with some dropped */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of the stored state */
@@ -132,17 +132,18 @@ static bool covers(const struct binding *found, const struct binding *wanted, ui
 /* The label of some link, which few others may have. */
 static grrl_label reference_of(const struct job *job)
 {
-    return grrl_label_masked(job->current->label[0], job->mask);
+    return job->current->n > 0 ? grrl_label_masked(job->current->label[0], job->mask)
+                               : GRRL_NO_PROPERTIES;
 }
 
 static const struct grrl_match_side *our_side(struct job *job)
 {
-    struct our_side *ours = &job->ours[job->mask != GRRL_ALL_PROPERTIES];
-    if (!ours->made || ours->mask != job->mask)
-        grrl_match_side_of(&ours->side, job->current, job->mask, reference_of(job));
-    ours->made = true;
-    ours->mask = job->mask;
-    return &ours->side;
+    struct our_side *our = &job->our_sides[job->mask != GRRL_ALL_PROPERTIES];
+    if (!our->made || our->mask != job->mask)
+        grrl_match_side_of(&our->side, job->current, job->mask, reference_of(job));
+    our->made = true;
+    our->mask = job->mask;
+    return &our->side;
 }
 
 static bool begin(const struct job *job, struct grrl_match *match)
@@ -162,7 +163,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
                 continue;
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
-            (void)begin(job, &match); /* as before, when it found domains */
+            (void)begin(job, &match); /* true, as it was for all mappings */
             grrl_match_fix(&match, job->stored_is_pattern ? v : c, job->stored_is_pattern ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK)
                 add_mapping(job, map, found);
