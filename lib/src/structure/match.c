@@ -90,7 +90,7 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
     int64_t left = match->budget;
     uint32_t candidates = match->candidates[depth];
     uint8_t vertex = steps[depth].vertex;
-    enum grrl_status status;
+    enum grrl_status status = GRRL_OK;
     for (;;) {
         if (candidates == 0) {
             if (depth == 0) {
@@ -106,7 +106,6 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
             continue;
         }
         if (--left < 0) {
-            left = 0;
             match->candidates[depth] = candidates;
             status = GRRL_ERR_UNDECIDED;
             break;
@@ -117,10 +116,8 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
             continue;
         image_of[vertex] = image;
         match->candidates[depth] = candidates;
-        if (depth == last) { /* the next call continues with the other candidates here */
-            status = GRRL_OK;
-            break;
-        }
+        if (depth == last)
+            break; /* the next call continues with the other candidates here */
         unused &= ~grrl_bit(image);
         depth++;
         if (check == CHECK_LABELS) {
@@ -138,7 +135,7 @@ static inline enum grrl_status search(struct grrl_match *match, enum check check
         match->growth = growth;
     match->depth = (uint8_t)depth;
     match->unused = unused;
-    match->budget = (uint32_t)left;
+    match->budget = left < 0 ? 0 : (uint32_t)left;
     return status;
 }
 
