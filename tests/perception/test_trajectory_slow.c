@@ -210,10 +210,12 @@ static double residual_of(const struct bow *bow)
 }
 
 /* The power of half waves over the trajectory: the slowest third of at most 24, beyond the mean of
- * the others, and that mean. */
-static void slow_powers(const double *value, double *total, double *slow, double *noise)
+ * the others, and that mean; and with 24, of the first four over the next four, else 0. */
+static void slow_powers(const double *value, double *total, double *slow, double *noise,
+                        double *shape)
 {
     int waves = (n_kept - 1) / 3 < 8 ? (n_kept - 1) / 3 : 8;
+    double half[2] = {0.0, 0.0};
     *total = 0.0;
     *slow = 0.0;
     *noise = 0.0;
@@ -224,7 +226,10 @@ static void slow_powers(const double *value, double *total, double *slow, double
         for (int i = 0; i < n_kept; i++)
             sum += 2.0 * value[i] * cos(3.14159265358979 * k * (i + 0.5) / n_kept) / n_kept;
         *(k <= waves ? slow : noise) += 0.5 * sum * sum / (k <= waves ? 1.0 : 2.0 * waves);
+        if (k <= 8)
+            half[k > 4] += sum * sum;
     }
+    *shape = waves < 8 ? 0.0 : half[0] / half[1];
     *slow = n_kept < 12 ? *total : fmax(0.0, *slow - waves * *noise);
     double least = n_kept < 12 ? *total / fmax(1.0, n_kept - 3.0) : (*total - *slow) / n_kept;
     *noise = fmax(*noise, least);
@@ -267,14 +272,19 @@ static void slow_probabilities(const struct bow *circle, double turn, double len
         miss_of[i] = fmin(most, fmax(-most, miss(circle, flat[i])));
         along[i] = flat[i].x;
     }
-    double total, slow, noise, moved;
-    slow_powers(along, &total, &moved, &noise);
-    slow_powers(miss_of, &total, &slow, &noise);
+    double total, slow, noise, moved, shape;
+    slow_powers(along, &total, &moved, &noise, &shape);
+    slow_powers(miss_of, &total, &slow, &noise, &shape);
     double sigma = hypot((double)config.play_rad, sqrt(slow + noise) * 12.0 * sqrt(5.0) / length);
     double line = student(turn / sigma, 4.0) / sigma;
     double circular = slow_circle_density(turn, length, sigma);
-    double joint = 2.0 * student(sqrt(slow) / length / 0.006, 8.0) / 0.006;
-    double other = log_normal(sqrt(slow) / length, 0.03, 0.7);
+    double joint = 2.0 * student(sqrt(slow) / length / 0.006, 4.0) / 0.006;
+    double other = log_normal(sqrt(slow) / length, 0.02, 1.0);
+    if (shape > 0.0) {
+        shape = fmin(shape, exp(1.8));
+        joint *= student((log(shape) + 0.1) / 1.1, 8.0) / 1.1;
+        other *= shape * log_normal(shape, exp(1.8), 0.8);
+    }
     double still = 2.0 * student(sqrt(moved) / 0.0003, 4.0) / 0.0003;
     double moving = log_normal(sqrt(moved), 0.09, 1.2);
     p[0] = 0.1 * still / (0.1 * still + 0.9 * moving);

@@ -7,7 +7,8 @@
  * in time, has the same power in slow waves as in slightly faster ones, and the ratio of that power
  * to the total is one over the number of independent samples. Any further power in the slowest
  * waves comes from errors of the hand and the mechanism, which no number of samples averages out,
- * or from a wrong model.
+ * or from a wrong model. A hand errs in all of the slow waves alike. A curve that is no circle
+ * misses the fitted one smoothly, so nearly all of its power is in the slower half.
  */
 #include "perception/trajectory_evidence.h"
 
@@ -38,10 +39,18 @@ enum { LEAST_SAMPLES = 12 };
 #define MOTION_SPREAD 1.2f
 
 /* Slow residuals divided by the length, root mean square: for mechanisms, and for paths that are
- * neither a line nor a circle, the latter within a factor of two. */
+ * neither a line nor a circle, the latter within a factor of three. */
 #define JOINT_SLOW 0.006f
-#define NEITHER_SLOW 0.03f
-#define NEITHER_SPREAD 0.7f
+#define NEITHER_SLOW 0.02f
+#define NEITHER_SPREAD 1.0f
+
+/* The logarithm of bend over sway. Of the bend's four waves a fitted circle takes up about two, so
+ * a hand leaves somewhat more power in the sway; power that falls with the fourth power of the
+ * frequency, as that of a smooth curve does, leaves about a sixth there. */
+#define JOINT_SHAPE -0.1f
+#define JOINT_SHAPE_SPREAD 1.1f
+#define NEITHER_SHAPE 1.8f
+#define NEITHER_SHAPE_SPREAD 0.8f
 
 #define ROOT_TWO_PI 2.5066283f
 
@@ -88,6 +97,8 @@ grrl_trajectory_spectrum_end(const struct grrl_trajectory_spectrum *spectrum)
             result.slow += power;
         else
             result.wave += power / (float)(2 * slow_n);
+        if (slow_n == GRRL_TRAJECTORY_SLOW && k < slow_n)
+            *(k < GRRL_TRAJECTORY_BEND ? &result.bend : &result.sway) += power;
     }
     result.slow -= (float)slow_n * result.wave;
     result.slow = result.slow > 0.0f ? result.slow : 0.0f;
@@ -110,14 +121,30 @@ static float student8(float x)
     return 0.386699f / (fourth * grrl_sqrt(square));
 }
 
+static float normal(float x, float mean, float spread)
+{
+    float z = (x - mean) / spread;
+    return grrl_exp(-0.5f * z * z) / (spread * ROOT_TWO_PI);
+}
+
 /* The log-normal density at x: the logarithm has the standard deviation `spread` about that of the
  * median. */
 static float log_normal(float x, float median, float spread)
 {
     if (!(x > 0.0f))
         return 0.0f;
-    float z = grrl_log(x / median) / spread;
-    return grrl_exp(-0.5f * z * z) / (x * spread * ROOT_TWO_PI);
+    return normal(grrl_log(x / median), 0.0f, spread) / x;
+}
+
+/* The likelihood ratio of a curve against a joint, from the shape of the slow residuals. */
+static float smoothness(const struct grrl_trajectory_residuals *residuals)
+{
+    if (!(residuals->bend > 0.0f && residuals->sway > 0.0f))
+        return 1.0f;
+    float shape = grrl_log(residuals->bend / residuals->sway);
+    shape = shape < NEITHER_SHAPE ? shape : NEITHER_SHAPE; /* no evidence in being smoother still */
+    float joint = student8((shape - JOINT_SHAPE) / JOINT_SHAPE_SPREAD) / JOINT_SHAPE_SPREAD;
+    return normal(shape, NEITHER_SHAPE, NEITHER_SHAPE_SPREAD) / joint;
 }
 
 /* The density of the observed turn if the handle turns by the length over the radius. */
@@ -165,8 +192,8 @@ void grrl_trajectory_weigh(const struct grrl_trajectory_config *config,
     float line = student4(clues->turn_rad / sigma_rad) / sigma_rad;
     float circle = density_of_circle(config, clues, sigma_rad);
     float slow = grrl_sqrt(r->slow) / clues->length_m;
-    float joint = 2.0f * student8(slow / JOINT_SLOW) / JOINT_SLOW;
-    float neither = log_normal(slow, NEITHER_SLOW, NEITHER_SPREAD);
+    float joint = 2.0f * student4(slow / JOINT_SLOW) / JOINT_SLOW;
+    float neither = log_normal(slow, NEITHER_SLOW, NEITHER_SPREAD) * smoothness(r);
     float place_m = grrl_sqrt(clues->places.slow);
     float still = 2.0f * student4(place_m / WANDER_M) / WANDER_M;
     float moving = log_normal(place_m, MOTION_M, MOTION_SPREAD);

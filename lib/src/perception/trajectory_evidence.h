@@ -12,8 +12,13 @@
 #include "grrl/perception/trajectory.h"
 
 /* Half waves over the trajectory: the slowest are errors of the hand and the mechanism, or of the
- * model; twice as many faster ones measure the noise power per wave. */
-enum { GRRL_TRAJECTORY_SLOW = 8, GRRL_TRAJECTORY_WAVES = 3 * GRRL_TRAJECTORY_SLOW };
+ * model; twice as many faster ones measure the noise power per wave. The error of a wrong model is
+ * in the slowest of all. */
+enum {
+    GRRL_TRAJECTORY_BEND = 4,
+    GRRL_TRAJECTORY_SLOW = 2 * GRRL_TRAJECTORY_BEND,
+    GRRL_TRAJECTORY_WAVES = 3 * GRRL_TRAJECTORY_SLOW
+};
 
 struct grrl_trajectory_spectrum {
     uint32_t n; /* samples that will be added */
@@ -26,6 +31,8 @@ struct grrl_trajectory_spectrum {
 struct grrl_trajectory_residuals {
     float total;
     float slow; /* power of the slowest waves beyond their share of the noise */
+    float bend; /* power of the slower half of these, with the noise in them */
+    float sway; /* power of the other half; 0 with too few samples to tell the two apart */
     float wave; /* noise power per wave: total / wave, without the slow part, is the effective
                    number of samples */
 };

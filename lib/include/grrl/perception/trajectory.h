@@ -87,8 +87,9 @@ void grrl_trajectory_config_default(struct grrl_trajectory_config *config);
  * The answer (see trajectory_evidence.c for the densities):
  * - rigid: the slow movement along the main axis is as small as the drift of a handle at rest,
  *   0.3 mm; from 10 mm on the handle counts as moving;
- * - neither: the slow residuals of the circle are around 3% of the path's length; those of doors
- *   and drawers are below 1%;
+ * - neither: the slow residuals of the circle are around 2% of the path's length and smooth, with
+ *   most of their power in at most four half waves over the path; those of doors and drawers are
+ *   below 1% and spread over eight;
  * - prismatic or revolute: the turn about the circle's centre is explained by play_rad and the
  * noise of the residuals (prismatic), or by a hinge at a typical distance (revolute). If all
  * samples lie within a micrometre, the answer is rigid and both models are zero.
