@@ -25,9 +25,10 @@ enum {
 };
 #define NEAR_M 0.05f
 
-/* Above this extent the unit may be millimetres; a sixteenth of the points at each end may be
- * outliers. */
-#define SPAN_M 2.0f
+/* Above this extent the unit may be millimetres, in which even scissors span more than 50; things
+ * that drift on a table of 2 m may span a little more than that. A sixteenth of the points at each
+ * end may be outliers. */
+#define SPAN_M 5.0f
 
 static const char *const texts[GRRL_AGENT_MISTAKES] = {
     "push commands sent again after 2 s without acknowledgement",

@@ -465,13 +465,23 @@ void tells_of_millimetres_and_pushes_nothing(void **)
 void a_large_table_must_be_named(void **)
 {
     PlantMistakes mistakes;
-    mistakes.scale = 3.0;
+    mistakes.scale = 12.0;
     grrl_agent_config config = defaults();
     Scene refused(config, "RPR", mistakes);
     refused.seconds(2.0);
     assert_int_equal(refused.plant().commands(), 0);
-    config.table = {-3.5f, -3.0f, 3.5f, 3.0f};
+    config.table = {-14.0f, -12.0f, 14.0f, 12.0f};
     Scene scene(config, "RPR", mistakes);
+    scene.seconds(2.0);
+    assert_true(scene.plant().commands() > 0);
+}
+
+/* Objects that drift apart on a table of 2 m span a little more than that. */
+void a_little_more_than_the_table_is_fine(void **)
+{
+    PlantMistakes mistakes;
+    mistakes.scale = 3.0;
+    Scene scene(defaults(), "RPR", mistakes);
     scene.seconds(2.0);
     assert_true(scene.plant().commands() > 0);
 }
@@ -558,6 +568,7 @@ int main()
         cmocka_unit_test(tells_of_ids_that_change),
         cmocka_unit_test(tells_of_millimetres_and_pushes_nothing),
         cmocka_unit_test(a_large_table_must_be_named),
+        cmocka_unit_test(a_little_more_than_the_table_is_fine),
         cmocka_unit_test(tells_of_a_slow_tracker),
         cmocka_unit_test(tells_of_a_phase_that_stays_at_rest),
         cmocka_unit_test(tells_of_a_push_that_does_not_end),
