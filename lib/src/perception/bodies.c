@@ -134,7 +134,7 @@ static void dissolve_small(struct grrl_perception *p)
  * moved away, is the table beside the object. */
 static void give_back_the_table(struct grrl_perception *p)
 {
-    for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
+    for (uint8_t b = 0; b < p->n_bodies && grrl_perception_on_table(p); b++) {
         if (grrl_assign_body_has_moved(p, b) || grrl_initial_is_compact(p, b))
             continue;
         for (uint16_t i = 0; i < p->n_slots; i++) {

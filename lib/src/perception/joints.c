@@ -448,7 +448,7 @@ static float untied_cost(const struct grrl_perception *p, const struct motion *m
                          const struct grrl_joint_evidence *e, float free)
 {
     const struct grrl_joint_fit *fit = &e->fit;
-    bool table = p->config.static_background;
+    bool table = grrl_perception_on_table(p);
     float tested;
     if (e->type == GRRL_REVOLUTE)
         tested =

@@ -87,7 +87,8 @@ enum grrl_status grrl_perception_init(struct grrl_perception *perception,
         !positive(config->keyframe_m) || !positive(config->jump_m) || !positive(config->table_m) ||
         !positive(config->min_turn_rad) || !positive(config->min_slide_m) ||
         !positive(config->pivot_scale_m) || !positive(config->gap_m) ||
-        !(grrl_is_finite(config->slack) && config->slack >= 1.0f) || config->min_features < 3)
+        !(grrl_is_finite(config->slack) && config->slack >= 1.0f) || config->min_features < 3 ||
+        (!GRRL_PICTURES && !config->static_background))
         return GRRL_ERR_ARGUMENT;
     memset(perception, 0, sizeof *perception);
     perception->config = *config;
