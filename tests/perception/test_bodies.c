@@ -158,7 +158,7 @@ static void take_out_small(void)
 /* Two that look like two things at rest, and a third turns against both in one place. */
 static bool are_one_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    return grrl_structure_turn_as_one(p, a, b) && grrl_apart_are_still(p, a, b) &&
+    return grrl_structure_move_as_one(p, a, b) && grrl_apart_are_still(p, a, b) &&
            !grrl_assign_bodies_may_share(p, a, b);
 }
 

@@ -285,6 +285,26 @@ static void a_link_at_rest_in_two_groups(void **state)
     assert_hinge((struct point){0.0, 0.0}, 0.004);
 }
 
+static void slide_once(double t)
+{
+    pose[1] = place(0.06 * ease(t), 0.0, 0.0);
+}
+
+/* Two pieces of the ground at rest look like two links, and the drawer slides along either. */
+static void a_drawer_between_pieces_of_the_ground(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = table();
+    begin(&config, "a_drawer_between_pieces_of_the_ground");
+    add_points(0, 14, -0.13, -0.01, 0.02);
+    add_points(0, 8, 0.25, 0.32, 0.02);
+    add_points(1, 14, 0.0, 0.12, 0.02);
+    perceive(&(struct recording){60, 0.0006, slide_once, NULL, NULL});
+    assert_int_equal(model->n_bodies, 2);
+    assert_int_equal(model->n_joints, 1);
+    assert_int_equal(model->joint[0].type, GRRL_PRISMATIC);
+}
+
 /* --- sizes that change --------------------------------------------------------------------------
  */
 
@@ -500,6 +520,7 @@ int main(void)
         cmocka_unit_test(a_turn_far_from_the_other),
         cmocka_unit_test(a_slide_past_the_body_between),
         cmocka_unit_test(a_link_at_rest_in_two_groups),
+        cmocka_unit_test(a_drawer_between_pieces_of_the_ground),
         cmocka_unit_test(a_hinge_before_a_camera_that_zooms),
         cmocka_unit_test(what_comes_nearer_is_one_thing),
         cmocka_unit_test(a_plane_keeps_its_size),

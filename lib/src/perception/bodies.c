@@ -59,12 +59,13 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-/* Two separate blobs at rest may be one link with few visible features. They are if another body
- * turns relative to both about the same point: two links would have two such points. */
+/* Two separate blobs at rest may be one link with few visible features, or pieces of the ground.
+ * They are one if another body turns relative to both about the same point: two links would have
+ * two such points. In a recording also if it slides along both. */
 static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
-           grrl_structure_turn_as_one(p, a, b);
+           grrl_structure_move_as_one(p, a, b);
 }
 
 /* Merges every pair of bodies that are one: those that never moved apart or, at rest, two blobs of

@@ -503,7 +503,7 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     collect(p, a, b, &motion);
     e->told = false;
     e->doubt = GRRL_REASON_LITTLE;
-    if (motion.n < 2)
+    if (motion.n < 2 || grrl_apart_never_moved(p, a, b))
         return false;
     fit_revolute(p, &motion, grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);

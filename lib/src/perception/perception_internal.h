@@ -240,6 +240,10 @@ bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
 /* Whether two bodies show no relative motion beyond noise. */
 bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
+/* Whether neither of two bodies moved in a recording, which shows all there is to see. If rests are
+ * known there are pushes, and the next one may tell. */
+bool grrl_apart_never_moved(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
 /* Whether two bodies moved so little relative to each other that their boundary is in doubt. */
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
@@ -308,8 +312,9 @@ float grrl_joint_distance_cost(const struct grrl_perception *p,
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
                                    const struct grrl_joint_evidence *e, float variance);
 
-/* structure.c: whether a third body turns relative to both bodies about the same pivot. */
-bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
+/* structure.c: whether a third body turns relative to both bodies about the same pivot, or slides
+ * along both while they never moved. */
+bool grrl_structure_move_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* Fills the model from the bodies and the joints between them. */
 void grrl_structure_update(struct grrl_perception *p);
