@@ -138,7 +138,7 @@ static bool is_slide_near(const struct grrl_perception *p, const struct grrl_joi
     float near = p->config.gap_m;
     near += e->fit.upper - e->fit.lower; /* fully extended, they are that much farther apart */
     float far = near;
-    if (support > CERTAIN)
+    if (support > CERTAIN || !grrl_perception_on_table(p))
         far += grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b);
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both_rest = p->keyframe[k].at_rest && grrl_perception_sees_both(p, k, e->a, e->b);
