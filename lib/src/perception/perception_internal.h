@@ -207,9 +207,10 @@ bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, ui
 /* The body a feature moves with, or GRRL_FEATURE_.. */
 uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
 
-/* Whether an unassigned feature moves with `body`; both must be visible in at least two keyframes.
- */
-bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body);
+/* Whether a feature of no body, or of another, moves with `body` as well; at least `least`
+ * keyframes must have seen both. */
+bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body,
+                         uint16_t least);
 
 /* Whether a feature of a body of n_own features fits some other body as well. */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
