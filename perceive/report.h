@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "solids.h"
 #include "tracks.h"
 #include "warnings.h"
 
@@ -16,7 +17,8 @@
 
 struct grrl_report {
     const struct grrl_model *model;
-    const struct grrl_perception *perception; /* the owner of the model */
+    const struct grrl_perception *perception; /* that made the model */
+    const struct grrl_solids *solids;         /* which of its bodies were joined afterwards */
     const struct grrl_perception_counts *counts;
     const struct grrl_tracks *recording; /* in metres, without what was left out */
     const struct grrl_warnings *warnings;

@@ -23,10 +23,11 @@ static void print_body(FILE *file, const struct grrl_report *report, unsigned i)
     const double scale = report->per_metre;
     (void)fprintf(file,
                   "    {\"name\": \"f%u\", \"x\": %.6g, \"y\": %.6g, \"length\": %.6g, "
-                  "\"width\": %.6g, \"axis\": [%.6g, %.6g],\n     \"features\": ",
+                  "\"width\": %.6g, \"axis\": [%.6g, %.6g], \"solid\": %s,\n     \"features\": ",
                   (unsigned)body->number, (double)body->centroid_m.x * scale,
                   (double)body->centroid_m.y * scale, (double)body->length_m * scale,
-                  (double)body->width_m * scale, (double)body->axis.x, (double)body->axis.y);
+                  (double)body->width_m * scale, (double)body->axis.x, (double)body->axis.y,
+                  report->solids->solid[i] ? "true" : "false");
     print_ids(file, report->model, i);
     (void)fputc('}', file);
 }

@@ -74,8 +74,16 @@ static void print_joint(FILE *file, const struct grrl_report *report,
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair)
 {
-    if (grrl_perception_pair(report->perception, (uint8_t)a, (uint8_t)b, pair) != GRRL_OK)
-        *pair = (struct grrl_pair){.relation = GRRL_RELATION_UNDETERMINED};
+    const struct grrl_solids *solids = report->solids;
+    const float third = 1.0f / 3.0f;
+    if (solids->solid[a] || solids->solid[b] ||
+        grrl_perception_pair(report->perception, solids->origin[a], solids->origin[b], pair) !=
+            GRRL_OK)
+        *pair = (struct grrl_pair){.relation = GRRL_RELATION_UNDETERMINED,
+                                   .reason = GRRL_REASON_SIZES,
+                                   .p_revolute = third,
+                                   .p_prismatic = third,
+                                   .p_disconnected = third};
     return pair->relation == GRRL_RELATION_JOINED         ? "joined"
            : pair->relation == GRRL_RELATION_DISCONNECTED ? "disconnected"
                                                           : "undetermined";
@@ -106,7 +114,7 @@ struct grrl_reason_text grrl_report_reason(const struct grrl_report *report,
         [GRRL_REASON_NO_TYPE] = "neither type explains the motion, or both do",
         [GRRL_REASON_UNPROVEN] = "independent motion explains it as well",
         [GRRL_REASON_FAR] = "too far from the joint the motion suggests",
-        [GRRL_REASON_SIZES] = "their relative size changes",
+        [GRRL_REASON_SIZES] = "they do not move in one plane",
         [GRRL_REASON_STRUCTURE] = "other joints leave no room for this one",
     };
     struct grrl_reason_text reason = {""};

@@ -168,20 +168,37 @@ static enum grrl_status print_term(struct grrl_run *run, const struct grrl_model
                              : status;
 }
 
+/* Only a camera sees solids; a tracker above a table sees a plane. */
+static bool join_solids(struct grrl_run *run, const struct grrl_tracks *tracks)
+{
+    const struct grrl_perception_config *config = &run->perception.config;
+    run->joined = *grrl_perception_model(&run->perception);
+    if (!config->static_background)
+        return grrl_solids_join(tracks, config, &run->joined, &run->solids);
+    for (uint8_t b = 0; b < run->joined.n_bodies; b++) {
+        run->solids.origin[b] = b;
+        run->solids.solid[b] = false;
+    }
+    return true;
+}
+
 static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale,
                                    const struct grrl_run_config *config,
                                    const struct grrl_tracks *tracks, const char *profile)
 {
     const struct grrl_perception *perception = &run->perception;
-    const struct grrl_model *model = grrl_perception_model(perception);
+    const struct grrl_model *model = &run->joined;
     double per_metre = 1.0 / (double)scale.metres;
     float noise_m;
+    if (!join_solids(run, tracks))
+        return GRRL_RUN_OUT_OF_MEMORY;
     run->status = print_term(run, model);
     if (run->status != GRRL_OK)
         return GRRL_RUN_FAILED;
     run->upright =
         (struct grrl_report){.model = model,
                              .perception = perception,
+                             .solids = &run->solids,
                              .counts = &perception->counts,
                              .recording = tracks,
                              .warnings = &run->warnings,

@@ -7,6 +7,7 @@
 #include "camera.h"
 #include "rectify.h"
 #include "report.h"
+#include "solids.h"
 #include "tracks.h"
 #include "warnings.h"
 
@@ -59,6 +60,8 @@ struct grrl_run {
     struct grrl_perception perception;
     struct grrl_perception rigid;
     struct grrl_camera camera;
+    struct grrl_model joined; /* the model after solids were joined */
+    struct grrl_solids solids;
     struct grrl_model picture;
     struct grrl_noise noise;
     struct grrl_warnings warnings;

@@ -68,11 +68,14 @@ View::View(const Conditions &conditions, uint64_t seed) : width_px_(conditions.s
     distance_m_ = focal_ * width_px_ / std::max(per_metre_, 1e-9);
 }
 
-Vec2 View::project(Vec2 table_m, double t) const
+Vec2 View::project(const Place &place, double t) const
 {
-    double depth_m = distance_m_ + std::sin(tilt_rad_) * table_m.y;
+    Vec2 table_m = place.table_m;
+    double depth_m =
+        distance_m_ + std::sin(tilt_rad_) * table_m.y - std::cos(tilt_rad_) * place.height_m;
     double scale = focal_ * width_px_ / depth_m * (1.0 + zoom_.at(t));
-    Vec2 p{scale * table_m.x, scale * std::cos(tilt_rad_) * table_m.y};
+    double up_m = std::cos(tilt_rad_) * table_m.y + std::sin(tilt_rad_) * place.height_m;
+    Vec2 p{scale * table_m.x, scale * up_m};
     p = rotate(p, roll_rad_.at(t) + turn_rad_.at(t));
     return p + Vec2{0.5 * width_px_ + pan_x_px_.at(t) + shake_x_px_.at(t),
                     0.5 * height_of_width * width_px_ + pan_y_px_.at(t) + shake_y_px_.at(t)};

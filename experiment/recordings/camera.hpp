@@ -12,8 +12,8 @@ class View
 public:
     View(const Conditions &conditions, uint64_t seed);
 
-    /* The position of a point of the table at a time, in the unit of the recording. */
-    grrl_sim::Vec2 project(grrl_sim::Vec2 table_m, double t) const;
+    /* The position of a point at a time, in the unit of the recording. */
+    grrl_sim::Vec2 project(const Place &place, double t) const;
     bool in_picture(grrl_sim::Vec2 p) const;
 
 private:

@@ -27,8 +27,9 @@ constexpr double frozen_share = 0.15;  /* of all points */
 /* A feature of a body and its current track. */
 struct Feature {
     size_t body = 0;
-    bool below = false;   /* on the ground, where bodies hide it */
-    Vec2 place_m;         /* in the body */
+    bool below = false; /* on the ground, where bodies hide it */
+    Vec2 place_m;       /* in the body */
+    double height_m = 0.0;
     double slide_m = 0.0; /* along the body's x axis over the whole time */
     double begin = 0.0;   /* of its track, on a time scale from 0 to 1 */
     double end = 1.0;
@@ -76,8 +77,12 @@ std::vector<Feature> place_features(const Scene &scene, int points, Random &rand
     for (size_t b = 0; b < scene.bodies.size(); b++) {
         const Body &body = scene.bodies[b];
         if (body.half_length_m > 0.0)
-            for (Vec2 at : spread_points(random, points, body.half_length_m, body.half_width_m))
+            for (Vec2 at : spread_points(random, points, body.half_length_m, body.half_width_m)) {
                 add(b, at);
+                if (body.half_depth_m > 0.0)
+                    features.back().height_m =
+                        random.uniform(-body.half_depth_m, body.half_depth_m);
+            }
     }
     Vec2 half{0.5 * table_links[0] * scene.link_m, 0.5 * table_links[1] * scene.link_m};
     for (Vec2 at : spread_points(random, std::max(2 * points, 10), half.x, half.y)) {
@@ -176,10 +181,10 @@ private:
             recording_.frames.back().push_back(feature.last);
             return;
         }
-        Vec2 table_m = on_table(feature, placed[feature.body], t);
-        Vec2 at = picture_of(table_m, t) + recording_.noise * noise;
+        Place place = place_of(feature, placed[feature.body], t);
+        Vec2 at = picture_of(place, t) + recording_.noise * noise;
         bool seen = (recording_.unit != Unit::PX || view_.in_picture(at)) &&
-                    !(feature.below && is_covered(placed, table_m));
+                    !(feature.below && is_covered(placed, place.table_m));
         if (!seen)
             feature.id = -1; /* the tracker has lost it */
         if (!seen || missed)
@@ -190,18 +195,21 @@ private:
         recording_.frames.back().push_back(feature.last);
     }
 
-    static Vec2 on_table(const Feature &feature, const Placed &placed, double t)
+    /* What is measured on a table, in mm or m, stays flat on it. */
+    Place place_of(const Feature &feature, const Placed &placed, double t) const
     {
-        Vec2 place = feature.place_m;
-        place.x += feature.slide_m * (t - 0.5);
-        return transform(placed.pose, placed.scale * place);
+        Vec2 place_m = feature.place_m;
+        place_m.x += feature.slide_m * (t - 0.5);
+        return recording_.unit == Unit::PX
+                   ? transform(placed, {place_m, feature.height_m})
+                   : Place{transform(placed.pose, placed.scale * place_m), 0.0};
     }
 
-    Vec2 picture_of(Vec2 table_m, double t) const
+    Vec2 picture_of(const Place &place, double t) const
     {
         if (recording_.unit == Unit::PX)
-            return view_.project(table_m, t);
-        return (recording_.unit == Unit::MM ? 1000.0 : 1.0) * table_m;
+            return view_.project(place, t);
+        return (recording_.unit == Unit::MM ? 1000.0 : 1.0) * place.table_m;
     }
 
     /* Whether a body, or the frame of a door on the ground, hides it. */

@@ -153,6 +153,19 @@ void make_nearer(Random &random, Scene &scene)
     scene.bodies.push_back(body);
 }
 
+/* Boxes that turn out of the plane while they move. */
+void make_solids(Random &random, Scene &scene)
+{
+    make_independent(random, scene, 2);
+    for (size_t b = 1; b < scene.bodies.size(); b++) {
+        Body &body = scene.bodies[b];
+        body.half_width_m *= 2.0;
+        body.half_depth_m = body.half_width_m;
+        body.pitch_rad = draw_wave(random, radians(random.uniform(15.0, 40.0)));
+        body.yaw_rad = draw_wave(random, radians(random.uniform(15.0, 40.0)));
+    }
+}
+
 /* A lever on the ground, and a hand that turns it, lets go and leaves in a straight line. */
 void make_hand(Random &random, Scene &scene)
 {
@@ -211,6 +224,9 @@ Scene draw(Object object, double link_m, Random &random)
         break;
     case Object::NEARER:
         make_nearer(random, scene);
+        break;
+    case Object::SOLIDS:
+        make_solids(random, scene);
         break;
     case Object::HAND:
         make_hand(random, scene);
@@ -302,6 +318,7 @@ const std::vector<NamedObject> &all_objects()
         {Object::FOUR, Kind::INDEPENDENT, "four", "four of them"},
         {Object::CROSSING, Kind::INDEPENDENT, "crossing", "a body crosses the picture straight"},
         {Object::NEARER, Kind::INDEPENDENT, "nearer", "a body whose picture grows"},
+        {Object::SOLIDS, Kind::INDEPENDENT, "solids", "two boxes that turn out of the plane"},
         {Object::HAND, Kind::HAND, "hand", "a door, and a hand that lets go of it"},
     };
     return objects;
@@ -330,11 +347,21 @@ double Joint::value(double t) const
     return sum;
 }
 
+Place transform(const Placed &placed, const Place &in_body)
+{
+    Vec2 across_and_up{in_body.table_m.y, in_body.height_m};
+    across_and_up = rotate(across_and_up, placed.pitch_rad);
+    Vec2 along_and_up = rotate(Vec2{in_body.table_m.x, across_and_up.y}, placed.yaw_rad);
+    Vec2 flat{along_and_up.x, across_and_up.x};
+    return {transform(placed.pose, placed.scale * flat), placed.scale * along_and_up.y};
+}
+
 std::vector<Placed> Scene::at(double t) const
 {
     std::vector<Placed> placed;
     for (size_t i = 0; i < bodies.size(); i++) {
-        placed.push_back({free_pose(*this, placed, bodies[i], t), 1.0 + bodies[i].growth.at(t)});
+        placed.push_back({free_pose(*this, placed, bodies[i], t), 1.0 + bodies[i].growth.at(t),
+                          bodies[i].pitch_rad.at(t), bodies[i].yaw_rad.at(t)});
         for (const Joint &joint : joints) {
             if (joint.b != static_cast<int>(i))
                 continue;

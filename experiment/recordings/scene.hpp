@@ -22,7 +22,7 @@ namespace grrl_experiment::recordings
 /* The visible part of the table, in link lengths; a scene stays within it. */
 constexpr double table_links[2] = {3.4, 1.9};
 
-enum class Object { R, P, RR, RP, DOOR, DRAWER, TWO, THREE, FOUR, CROSSING, NEARER, HAND };
+enum class Object { R, P, RR, RP, DOOR, DRAWER, TWO, THREE, FOUR, CROSSING, NEARER, SOLIDS, HAND };
 
 /* The group in which an object is counted. */
 enum class Kind { MECHANISM, INDEPENDENT, HAND };
@@ -51,12 +51,15 @@ struct Wave {
     double at(double t) const;
 };
 
-/* A rectangle and its motion. Without a joint its pose is start, moved by waves and ramps. */
+/* A rectangle, or a box with a depth, and its motion. Without a joint its pose is start, moved by
+ * waves and ramps. */
 struct Body {
     double half_length_m = 0.0;
     double half_width_m = 0.0;
+    double half_depth_m = 0.0;
     grrl_sim::Pose start;
     Wave x_m, y_m, turn_rad;
+    Wave pitch_rad, yaw_rad; /* out of the table's plane, about its own axes */
     Ramp cross_x_m, cross_y_m;
     Ramp growth;          /* of its scale in the image: it approaches */
     bool carried = false; /* a hand: moves with the end of the lever while touching it */
@@ -78,7 +81,18 @@ struct Joint {
 struct Placed {
     grrl_sim::Pose pose;
     double scale = 1.0;
+    double pitch_rad = 0.0; /* about the body's x axis, after */
+    double yaw_rad = 0.0;   /* about its y axis */
 };
+
+/* A place on the table and the height above it. */
+struct Place {
+    grrl_sim::Vec2 table_m;
+    double height_m = 0.0;
+};
+
+/* Where a point of a body is, given in the body's frame. */
+Place transform(const Placed &placed, const Place &in_body);
 
 struct Scene {
     double link_m = 0.3;      /* length of a link */

@@ -83,9 +83,9 @@ void add_pairs(nb::dict &dict, const grrl_report &report)
     nb::list reason;
     for (int a = 0; a < model.n_bodies; a++) {
         for (int b = a + 1; b < model.n_bodies; b++) {
-            grrl_pair pair{}; /* undetermined */
-            (void)!grrl_perception_pair(report.perception, static_cast<uint8_t>(a),
-                                        static_cast<uint8_t>(b), &pair);
+            grrl_pair pair{};
+            (void)grrl_report_relation(&report, static_cast<unsigned>(a), static_cast<unsigned>(b),
+                                       &pair);
             if (pair.relation == GRRL_RELATION_JOINED)
                 continue;
             ends.insert(ends.end(), {a, b});
