@@ -151,7 +151,10 @@ static enum grrl_run_result perceive(struct grrl_run *run,
         run->status = observe(&run->perception, tracks);
     if (run->status == GRRL_OK)
         observe_growing(run, config, tracks);
-    if (run->status == GRRL_OK && tracks->log.size == 0) /* an update divides a body only once */
+    /* An update divides a body only once. Points in no body are those of solids, or badly tracked:
+     * dividing on would only make splinters. */
+    if (run->status == GRRL_OK && tracks->log.size == 0 &&
+        unassigned(grrl_perception_model(&run->perception)) == 0)
         run->status = grrl_perception_update(&run->perception);
     if (run->status == GRRL_ERR_NONE)
         return run->perception.counts.refused > 0 ? GRRL_RUN_TOO_FAR : GRRL_RUN_NOTHING_SEEN;

@@ -265,7 +265,7 @@ static bool may_move_as_one(const struct grrl_perception *p, uint16_t i, uint16_
     float count = 0.0f;
     float at_k0 =
         grrl_sqrt(grrl_vec2_distance2(p->keyframe[k0].point[i], p->keyframe[k0].point[j]));
-    if (grrl_perception_on_table(p) || p->config.sizes_change)
+    if (chosen == NULL)
         return true;
     for (uint8_t c = 0; c < chosen->n; c++) {
         const struct grrl_perception_keyframe *key = &p->keyframe[chosen->k[c]];
@@ -351,13 +351,12 @@ static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uin
     return n_group;
 }
 
-/* The largest set of features in `slots` that moved as one; returns its size, members[]. */
-uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
-                             const float *score, uint16_t *members)
+/* The largest group that grows from seeds and their nearest neighbours, or those of them that
+ * `keep` their distance; returns its size. */
+static uint16_t largest_group(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                              uint8_t k0, const struct choice_of_keyframes *chosen, bool keep,
+                              uint16_t *members)
 {
-    uint8_t k0;
-    bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
-    struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
     uint16_t best = 0;
     uint16_t n_members = 0;
     uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
@@ -366,14 +365,28 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
         uint16_t group[GRRL_MAX_FEATURES];
         if (p->keyframe[k0].weight[slots[i]] == 0 || is_explained(&explained, slots[i]))
             continue;
-        uint16_t n_group = seed_group(p, slots, n, slots[i], k0, &chosen, group);
+        uint16_t n_group = seed_group(p, slots, n, slots[i], k0, keep ? chosen : NULL, group);
         uint16_t stable = n_group;
-        n_group = grow(p, slots, n, k0, &chosen, &explained, group, &stable);
+        n_group = grow(p, slots, n, k0, chosen, &explained, group, &stable);
         if (stable > best) {
             best = stable;
             n_members = n_group;
             memcpy(members, group, n_group * sizeof group[0]);
         }
     }
+    return n_members;
+}
+
+/* The largest set of features in `slots` that moved as one; returns its size, members[]. */
+uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                             const float *score, uint16_t *members)
+{
+    uint8_t k0;
+    bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
+    struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
+    uint16_t n_members = largest_group(p, slots, n, k0, &chosen, false, members);
+    if (n_members < p->config.min_features && !grrl_perception_on_table(p) &&
+        !p->config.sizes_change)
+        n_members = largest_group(p, slots, n, k0, &chosen, true, members);
     return n_members;
 }
