@@ -108,7 +108,7 @@ static void watch_ids(struct grrl_agent *agent, const grrl_points_t *points)
     int32_t n = points->n_points < STRANGE_SAMPLE ? points->n_points : STRANGE_SAMPLE;
     int32_t kept = 0;
     int32_t at = -1;
-    for (int32_t i = 0; i < n; i++)
+    for (int32_t i = 0; i < n && 4 * kept < n; i++)
         kept += was_there(plant, points->id[i], points->x[i], points->y[i], &at);
     bool strange = n >= FEW && plant->n_points >= FEW && 4 * kept < n;
     plant->strange_n = strange ? plant->strange_n + 1 : 0;
@@ -232,15 +232,23 @@ static float extent(float *values, int32_t n)
     return values[n - 1 - n / 16] - values[n / 16];
 }
 
+/* Of at least FEW numbers, in four lanes, which become vectors. */
 static float range(const float *values, int32_t n)
 {
-    float low = values[0];
-    float high = values[0];
-    for (int32_t i = 1; i < n; i++) {
-        low = values[i] < low ? values[i] : low;
-        high = values[i] > high ? values[i] : high;
+    float low[4] = {values[0], values[0], values[0], values[0]};
+    float high[4] = {values[0], values[0], values[0], values[0]};
+    for (int32_t i = 0; i < n; i += 4) {
+        const float *four = i + 4 <= n ? values + i : values + n - 4;
+        for (int j = 0; j < 4; j++) {
+            low[j] = four[j] < low[j] ? four[j] : low[j];
+            high[j] = four[j] > high[j] ? four[j] : high[j];
+        }
     }
-    return high - low;
+    for (int j = 1; j < 4; j++) {
+        low[0] = low[j] < low[0] ? low[j] : low[0];
+        high[0] = high[j] > high[0] ? high[j] : high[0];
+    }
+    return high[0] - low[0];
 }
 
 /* Sorts only if the frame looks wrong. */

@@ -278,8 +278,6 @@ static bool measure(const struct bench_peer *peer, const struct bench_pair *pair
 struct row {
     double mean;
     double built;
-    double p99;
-    double worst;
     unsigned n;
 };
 
@@ -295,24 +293,56 @@ static void add_case(bool json, bool *first, const char *peer, const char *what,
     *first = false;
 }
 
-static void print_rows(const struct bench_peer **peers, unsigned n_peers, const struct row *rows,
-                       uint8_t n, const char *what)
+/* A time as in a table: tenths only where they count. */
+static void print_ns(double ns)
+{
+    (void)printf(" %.*f", ns < 10, ns);
+}
+
+static double mean_of(const struct row *row)
+{
+    return row->n == BENCH_SHAPES ? exp(row->mean / row->n) : 0;
+}
+
+/* How many times as long one peer takes as another, per question. */
+static void print_ratio(struct row rows[BENCH_QUESTIONS][MAX_PEERS], uint8_t n, const char *slow,
+                        unsigned slow_at, const char *fast, unsigned fast_at)
+{
+    (void)printf("| %u | %s / %s |", (unsigned)n, slow, fast);
+    for (int question = 0; question < BENCH_QUESTIONS; question++) {
+        double a = mean_of(&rows[question][slow_at]);
+        double b = mean_of(&rows[question][fast_at]);
+        if (a > 0 && b > 0)
+            (void)printf(" %.1f", a / b);
+        (void)printf(" |");
+    }
+    (void)printf("\n");
+}
+
+static void print_rows(const struct bench_peer **peers, unsigned n_peers,
+                       struct row rows[BENCH_QUESTIONS][MAX_PEERS], uint8_t n)
 {
     for (unsigned p = 0; p < n_peers; p++) {
-        const struct row *row = &rows[p];
-        if (row->n == 0)
-            continue; /* not supported */
-        if (row->n < BENCH_SHAPES) {
-            (void)printf("| %2u | %s | %s | no end on %u of %d shapes |\n", (unsigned)n, what,
-                         peers[p]->name, BENCH_SHAPES - row->n, BENCH_SHAPES);
-            continue;
+        (void)printf("| %u | %s |", (unsigned)n, peers[p]->name);
+        for (int question = 0; question < BENCH_QUESTIONS; question++) {
+            const struct row *row = &rows[question][p];
+            if (row->n == BENCH_SHAPES) {
+                print_ns(mean_of(row));
+                (void)printf(" (%.0f)", exp(row->built / row->n));
+            } else if (row->n > 0) {
+                (void)printf(" no end on %u of %d shapes", BENCH_SHAPES - row->n, BENCH_SHAPES);
+            }
+            (void)printf(" |");
         }
-        double mean = exp(row->mean / row->n);
-        double built = exp(row->built / row->n);
-        (void)printf("| %2u | %-16s | %-12s | %9.1f | %9.1f | %9.0f | %9.0f | %7.1f | %7.1f |\n",
-                     (unsigned)n, what, peers[p]->name, mean, built, exp(row->p99 / row->n),
-                     row->worst, mean / exp(rows[0].mean / row->n),
-                     mean / exp(rows[1].mean / row->n));
+        (void)printf("\n");
+    }
+    for (unsigned p = 2; p < n_peers; p++) {
+        if (strcmp(peers[p]->name, "boost") == 0) {
+            print_ratio(rows, n, "boost", p, "grrl", 0);
+            print_ratio(rows, n, "boost", p, "grrl planned", 1);
+        } else if (strcmp(peers[p]->name, "igraph") == 0) {
+            print_ratio(rows, n, "igraph", p, "grrl", 0);
+        }
     }
 }
 
@@ -328,16 +358,11 @@ static bool measure_networkx(const struct bench_pair *pairs, unsigned n, struct 
 }
 #endif
 
-static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
-                         enum bench_question question)
+static void run_question(bool json, bool *first, const struct bench_peer **peers, unsigned n_peers,
+                         unsigned n_pairs, uint8_t n, enum bench_question question,
+                         struct row *rows)
 {
     static struct bench_pair pairs[MAX_PAIRS];
-    const struct bench_peer *peers[MAX_PEERS];
-    struct row rows[MAX_PEERS] = {{0}};
-    unsigned n_peers = list_peers(peers);
-#ifdef GRRL_BENCH_NETWORKX
-    peers[n_peers++] = &networkx;
-#endif
     for (int shape = 0; shape < BENCH_SHAPES; shape++) {
         struct grrl_random random;
         grrl_random_init(&random, 20080625u,
@@ -361,13 +386,36 @@ static void run_question(bool json, bool *first, unsigned n_pairs, uint8_t n,
             add_case(json, first, peers[p]->name, what, n, &times);
             rows[p].mean += log(times.mean);
             rows[p].built += log(times.mean + times.build);
-            rows[p].p99 += log(times.p99 > 1 ? times.p99 : 1); /* the clock ticks in tens */
-            rows[p].worst = times.worst > rows[p].worst ? times.worst : rows[p].worst;
             rows[p].n++;
         }
     }
+}
+
+static void run_size(bool json, bool *first, unsigned n_pairs, uint8_t n)
+{
+    const struct bench_peer *peers[MAX_PEERS];
+    struct row rows[BENCH_QUESTIONS][MAX_PEERS] = {{{0}}};
+    unsigned n_peers = list_peers(peers);
+#ifdef GRRL_BENCH_NETWORKX
+    peers[n_peers++] = &networkx;
+#endif
+    for (int question = 0; question < BENCH_QUESTIONS; question++)
+        run_question(json, first, peers, n_peers, n_pairs, n, (enum bench_question)question,
+                     rows[question]);
     if (!json)
-        print_rows(peers, n_peers, rows, n, question_names[question]);
+        print_rows(peers, n_peers, rows, n);
+}
+
+/* The head of a table with a column per peer. */
+static void print_head(const char *first, const struct bench_peer **peers, unsigned n_peers)
+{
+    (void)printf("| %s |", first);
+    for (unsigned p = 0; p < n_peers; p++)
+        (void)printf(" %s |", peers[p]->name);
+    (void)printf("\n|");
+    for (unsigned p = 0; p <= n_peers; p++)
+        (void)printf("---|");
+    (void)printf("\n");
 }
 
 /* Symmetric worst cases, each repeated until the clock's own cost does not count. */
@@ -377,18 +425,22 @@ static void run_symmetric(bool json, bool *first)
         const char *name;
         uint8_t legs;
         bool part;
-    } cases[] = {{"hexapod 6x3 near miss", 6, false},
+    } cases[] = {{"6x3 near miss", 6, false},
                  {"10x3 near miss", 10, false},
-                 {"hexapod 6x3 no part", 6, true},
+                 {"6x3 no part", 6, true},
                  {"10x3 no part", 10, true}};
     const struct bench_peer *peers[MAX_PEERS];
     unsigned n_peers = list_peers(peers);
+    if (!json)
+        print_head("", peers, n_peers);
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
         struct bench_pair pair;
         if (cases[c].part)
             bench_near_part(cases[c].legs, &pair);
         else
             bench_near_miss(cases[c].legs, &pair);
+        if (!json)
+            (void)printf("| %s |", cases[c].name);
         for (unsigned p = 0; p < n_peers; p++) {
             void *a = peers[p]->build(&pair.pattern);
             void *b = peers[p]->build(&pair.target);
@@ -405,28 +457,39 @@ static void run_symmetric(bool json, bool *first)
             if (able && json)
                 add_case(json, first, peers[p]->name, cases[c].name, pair.target.n, &times);
             else if (able)
-                (void)printf("%-24s %-14s %12.1f ns\n", cases[c].name, peers[p]->name, best);
+                print_ns(best);
+            if (!json)
+                (void)printf(" |");
             peers[p]->destroy(a);
             peers[p]->destroy(b);
         }
+        if (!json)
+            (void)printf("\n");
     }
 }
 
-/* The library comes first, from a term. */
-static void run_building(bool json, bool *first, uint8_t n)
+/* The library builds from a term. Its plans are not measured here. */
+static void run_building(bool json, bool *first)
 {
     const struct bench_peer *peers[MAX_PEERS];
     unsigned n_peers = list_peers(peers);
-    double own = bench_build(NULL, n);
-    for (unsigned p = 1; p < n_peers; p++) {
-        bool library = p == 1; /* its plans are not measured here */
-        double spent = library ? own : bench_build(peers[p], n);
-        struct times times = {spent, spent, spent, spent, 2 * spent};
-        if (json)
-            add_case(json, first, peers[library ? 0 : p]->name, "building one", n, &times);
-        else
-            (void)printf("| %2u | %-12s | %8.1f | %5.1f |\n", (unsigned)n,
-                         library ? "grrl" : peers[p]->name, spent, spent / own);
+    for (unsigned p = 2; p < n_peers; p++)
+        peers[p - 1] = peers[p];
+    n_peers--;
+    if (!json)
+        print_head("links", peers, n_peers);
+    for (int s = 0; s < N_SIZES; s++) {
+        if (!json)
+            (void)printf("| %u |", (unsigned)sizes[s]);
+        for (unsigned p = 0; p < n_peers; p++) {
+            double spent = bench_build(p == 0 ? NULL : peers[p], sizes[s]);
+            struct times times = {spent, spent, spent, spent, 2 * spent};
+            add_case(json, first, peers[p]->name, "building one", sizes[s], &times);
+            if (!json)
+                (void)printf(" %.0f |", spent);
+        }
+        if (!json)
+            (void)printf("\n");
     }
 }
 
@@ -439,19 +502,19 @@ int bench_match(bool json, unsigned n_pairs)
         (void)printf("[");
     } else {
         print_absent();
-        (void)printf("| links | question | peer | ns | with building both | p99 | worst | grrl is "
-                     "faster | planned |\n|---|---|---|---|---|---|---|---|---|\n");
+        (void)printf("| links | |");
+        for (int question = 0; question < BENCH_QUESTIONS; question++)
+            (void)printf(" %s |", question_names[question]);
+        (void)printf("\n|---|---|---|---|---|---|\n");
     }
     for (int s = 0; s < N_SIZES; s++)
-        for (int question = 0; question < BENCH_QUESTIONS; question++)
-            run_question(json, &first, n_pairs, sizes[s], (enum bench_question)question);
+        run_size(json, &first, n_pairs, sizes[s]);
     if (!json)
         (void)printf("\n");
     run_symmetric(json, &first);
     if (!json)
-        (void)printf("\n| links | building one | ns | grrl is faster |\n|---|---|---|---|\n");
-    for (int s = 0; s < N_SIZES; s++)
-        run_building(json, &first, sizes[s]);
+        (void)printf("\n");
+    run_building(json, &first);
     if (json)
         (void)printf("\n]\n");
     return 0;

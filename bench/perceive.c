@@ -1,7 +1,7 @@
 /*
- * grrl-bench perceive: the cost of perception. Chains of links are moved joint by joint at random,
- * with at least ten or twenty features per link, until the keyframe memory is full and for two
- * rounds more.
+ * grrl-bench perceive: the cost of perception, as it grows with links, features and pushes. Chains
+ * of links are moved joint by joint at random; the keyframe memory is full after the first ten
+ * pushes or soon after.
  */
 #include <stdio.h>
 #include <string.h>
@@ -9,24 +9,23 @@
 #include "bench.h"
 #include "kinematic_world.h"
 
-enum { SEEDS = 5, PUSHES = 40, MARKS = 3, PUSH_FRAMES = 130 };
+enum { SEEDS = 5, SPANS = 4, SPAN_PUSHES = 10, PUSH_FRAMES = 130 };
 
 struct size {
     int links;
-    int features_a_link; /* minimum */
+    int features_a_link; /* minimum; there are 8 to 13 anyway */
 };
 
-/* Sums over pushes that left this number of keyframes, or up to a quarter fewer. */
-struct sum {
-    double update_ns;
-    double push_ns; /* all frames and the update */
+struct cost {
+    double update_ns[SPANS]; /* sums over a span of ten pushes each */
+    double push_ns;          /* and all frames with their updates */
+    double worst_ns;         /* of one update */
     double features;
-    double n;
+    double keyframes; /* at the end */
 };
 
-static const struct size sizes[] = {{2, 0}, {4, 0}, {8, 0}, {12, 0}, {4, 20}, {8, 20}};
-static const int marks[MARKS] = {GRRL_MAX_KEYFRAMES / 3, 2 * GRRL_MAX_KEYFRAMES / 3,
-                                 GRRL_MAX_KEYFRAMES};
+static const struct size sizes[] = {{4, 0},  {8, 0},  {16, 0}, {32, 0},
+                                    {8, 20}, {8, 40}, {8, 64}, {32, 16}};
 
 static struct kinematic_world world;
 static struct grrl_perception perception;
@@ -48,20 +47,7 @@ static void make_world(const struct size *size, uint64_t seed)
     }
 }
 
-static void take(struct sum *sums, double update_ns, double push_ns)
-{
-    int keyframes = (int)perception.counts.keyframes_high;
-    for (int m = 0; m < MARKS; m++) {
-        if (keyframes <= marks[m] && 4 * keyframes > 3 * marks[m]) {
-            sums[m].update_ns += update_ns;
-            sums[m].push_ns += push_ns;
-            sums[m].features += world.n_points;
-            sums[m].n += 1.0;
-        }
-    }
-}
-
-static bool measure(const struct size *size, uint64_t seed, struct sum *sums)
+static bool measure(const struct size *size, uint64_t seed, struct cost *cost)
 {
     struct grrl_perception_config config;
     const struct grrl_vec2 shift = {0.01f, -0.005f};
@@ -69,7 +55,7 @@ static bool measure(const struct size *size, uint64_t seed, struct sum *sums)
     make_world(size, seed);
     bool good = grrl_perception_init(&perception, &config) == GRRL_OK;
     world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
-    for (int i = 0; good && i < PUSHES; i++) {
+    for (int i = 0; good && i < SPANS * SPAN_PUSHES; i++) {
         float dq[WORLD_LINKS] = {0.0f};
         int link = 1 + (int)grrl_random_below(&world.random, (uint32_t)world.n_links - 1);
         float step = world.joint[link] == 'R' ? world_uniform(&world, 0.1f, 0.4f)
@@ -84,40 +70,47 @@ static bool measure(const struct size *size, uint64_t seed, struct sum *sums)
         double moved_ns = bench_now_ns();
         good = grrl_perception_update(&perception) == GRRL_OK;
         double end_ns = bench_now_ns();
-        take(sums, end_ns - moved_ns, end_ns - start_ns - made_ns);
+        double update_ns = end_ns - moved_ns;
+        cost->update_ns[i / SPAN_PUSHES] += update_ns;
+        cost->push_ns += end_ns - start_ns - made_ns;
+        cost->worst_ns = update_ns > cost->worst_ns ? update_ns : cost->worst_ns;
     }
+    cost->features += world.n_points;
+    cost->keyframes += perception.n_keyframes;
     return good;
 }
 
-static void print(const struct size *size, const struct sum *sums, bool json, bool *first)
+static void print(const struct size *size, const struct cost *cost, bool json, bool first)
 {
-    for (int m = 0; m < MARKS; m++) {
-        double n = sums[m].n;
-        if (!(n > 0.0))
-            continue;
-        (void)printf(json ? "%s{\"links\": %d, \"features\": %.0f, \"keyframes\": %d, "
-                            "\"update_ms\": %.3f, \"push_ms\": %.3f}"
-                          : "%s| %d | %.0f | %d | %.2f | %.2f |",
-                     json ? (*first ? "[\n " : ",\n ") : "", size->links, sums[m].features / n,
-                     marks[m], sums[m].update_ns / n * 1e-6, sums[m].push_ns / n * 1e-6);
-        *first = false;
-        if (!json)
-            (void)putchar('\n');
-    }
+    const double runs = SEEDS;
+    const double span_ms = 1e-6 / (runs * SPAN_PUSHES);
+    (void)printf(json ? "%s{\"links\": %d, \"features\": %.0f, \"keyframes\": %.0f"
+                      : "%s| %d | %.0f | %.0f",
+                 json ? (first ? "[\n " : ",\n ") : "", size->links, cost->features / runs,
+                 cost->keyframes / runs);
+    for (int s = 0; s < SPANS; s++)
+        if (json)
+            (void)printf(", \"update_ms_from_push_%d\": %.3f", s * SPAN_PUSHES + 1,
+                         cost->update_ns[s] * span_ms);
+        else
+            (void)printf(" | %.2f", cost->update_ns[s] * span_ms);
+    (void)printf(json ? ", \"worst_ms\": %.3f, \"push_ms\": %.3f}" : " | %.2f | %.2f |\n",
+                 cost->worst_ns * 1e-6, cost->push_ns * span_ms / SPANS);
 }
 
 int bench_perceive(bool json)
 {
     if (!json)
-        (void)puts("| links | features | keyframes | update, ms | a push with its frames, ms |\n"
-                   "|---|---|---|---|---|");
-    bool first = true;
+        (void)puts(
+            "| links | features | keyframes | update, ms: push 1 to 10 | 11 to 20 | 21 to 30 "
+            "| 31 to 40 | worst | a push with its frames |\n"
+            "|---|---|---|---|---|---|---|---|---|");
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        struct sum sums[MARKS] = {{0}};
+        struct cost cost = {.features = 0.0};
         for (uint64_t seed = 1; seed <= SEEDS; seed++)
-            if (!measure(&sizes[i], seed, sums))
+            if (!measure(&sizes[i], seed, &cost))
                 return 1;
-        print(&sizes[i], sums, json, &first);
+        print(&sizes[i], &cost, json, i == 0);
     }
     if (json)
         (void)puts("\n]");

@@ -4,7 +4,7 @@
 function(grrl_configure target)
     set(common -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Wundef -Wcast-qual
         -Wdouble-promotion)
-    target_compile_options(${target} PRIVATE ${common} -ffp-contract=off
+    target_compile_options(${target} PRIVATE ${common} -ffp-contract=off -fno-trapping-math
         $<$<COMPILE_LANGUAGE:C>:-Wmissing-prototypes -Wstrict-prototypes
             -Wno-enum-float-conversion>
         $<$<BOOL:${GRRL_WERROR}>:-Werror>)

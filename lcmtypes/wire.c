@@ -321,7 +321,7 @@ static bool all_in_range(const struct field *field, const unsigned char *values,
     } else if (field->kind == I32) {
         const int32_t low = (int32_t)field->range[0];
         const int32_t high = (int32_t)field->range[1];
-        for (uint32_t i = 0; i < n; i++) {
+        for (uint32_t i = 0; i < n && (low > INT32_MIN || high < INT32_MAX); i++) {
             int32_t value;
             memcpy(&value, values + (size_t)i * sizeof value, sizeof value);
             good &= (unsigned)(value >= low) & (unsigned)(value <= high);
@@ -348,8 +348,8 @@ static bool refuse(const struct type *type, const struct field *field, const uns
     return false;
 }
 
-/* From the wire's order of bytes to the machine's. */
-static void take(enum kind kind, const uint8_t *bytes, uint32_t n, unsigned char *to)
+/* From the wire's order of bytes to the machine's, or back: it is the same change. */
+static void turn(enum kind kind, const uint8_t *bytes, uint32_t n, uint8_t *to)
 {
     const unsigned width = kind_bytes[kind];
     if (width == 1) /* there may be a million */
@@ -384,7 +384,7 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
             return false;
         }
         unsigned char *to = place(field, message);
-        take((enum kind)field->kind, bytes + at, n, to);
+        turn((enum kind)field->kind, bytes + at, n, to);
         at += n * width;
         if (field->kind != BYTE && !all_in_range(field, to, n)) /* every byte is right */
             return refuse(type, field, to, why);
@@ -394,33 +394,6 @@ static bool decode(const struct type *type, const void *data, uint32_t size, voi
     (void)snprintf(why->text, sizeof why->text, "%s: %u bytes too many", type->name,
                    (unsigned)(size - at));
     return false;
-}
-
-/* The inverse of take. */
-static void put(enum kind kind, const unsigned char *values, uint32_t n, uint8_t *bytes)
-{
-    const unsigned width = kind_bytes[kind];
-    if (width == 1)
-        memcpy(bytes, values, n);
-    for (uint32_t i = 0; width == 2 && i < n; i++) {
-        uint16_t bits;
-        memcpy(&bits, values + 2 * (size_t)i, 2);
-        put_big_endian(bits, 2, bytes + 2 * (size_t)i);
-    }
-    for (uint32_t i = 0; width == 4 && i < n; i++) {
-        uint32_t bits;
-        uint8_t *to = bytes + 4 * (size_t)i;
-        memcpy(&bits, values + 4 * (size_t)i, 4);
-        to[0] = (uint8_t)(bits >> 24); /* written out, compilers make one instruction of it */
-        to[1] = (uint8_t)(bits >> 16);
-        to[2] = (uint8_t)(bits >> 8);
-        to[3] = (uint8_t)bits;
-    }
-    for (uint32_t i = 0; width == 8 && i < n; i++) {
-        uint64_t bits;
-        memcpy(&bits, values + 8 * (size_t)i, 8);
-        put_big_endian(bits, 8, bytes + 8 * (size_t)i);
-    }
 }
 
 /* The same checks, on the sender's side. Returns the bytes written, or -1. */
@@ -441,7 +414,7 @@ static int encode(const struct type *type, const void *message, int capacity, ui
             (void)snprintf(why->text, sizeof why->text, "%s: the buffer is too small", type->name);
             return -1;
         }
-        put((enum kind)field->kind, values, n, data + at);
+        turn((enum kind)field->kind, values, n, data + at);
         at += n * kind_bytes[field->kind];
     }
     put_big_endian((uint64_t)type->fingerprint(), HEAD_BYTES, data);

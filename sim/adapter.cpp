@@ -1,6 +1,8 @@
 /* adapter.cpp: converts pushes (double) and points (float). */
 #include "adapter.hpp"
 
+#include <algorithm>
+
 namespace grrl_sim
 {
 
@@ -18,14 +20,12 @@ PushCommand command_of(const grrl_push &push)
 
 int copy_points(const Frame &frame, int capacity, int32_t *id, float *x_m, float *y_m)
 {
-    int n = 0;
-    for (const TrackedFeature &feature : frame.features) {
-        if (n == capacity)
-            break;
-        id[n] = static_cast<int32_t>(feature.id);
-        x_m[n] = static_cast<float>(feature.x_m);
-        y_m[n] = static_cast<float>(feature.y_m);
-        n++;
+    const int n = std::min(capacity, static_cast<int>(frame.features.size()));
+    const TrackedFeature *feature = frame.features.data();
+    for (int i = 0; i < n; i++) {
+        id[i] = static_cast<int32_t>(feature[i].id);
+        x_m[i] = static_cast<float>(feature[i].x_m);
+        y_m[i] = static_cast<float>(feature[i].y_m);
     }
     return n;
 }

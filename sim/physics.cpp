@@ -294,6 +294,7 @@ void Physics::stop_links()
 std::vector<Pose> Physics::poses() const
 {
     std::vector<Pose> poses;
+    poses.reserve(bodies_->links.size());
     for (const b2Body *link : bodies_->links)
         poses.push_back({metres(link->GetPosition()), static_cast<double>(link->GetAngle())});
     return poses;

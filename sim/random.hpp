@@ -38,11 +38,14 @@ public:
      * it is the same on every machine: summed as integers, so it is exact. */
     double normal()
     {
-        uint32_t sum = 0;
+        uint64_t both = 0; /* of the high halves, times 65536, and the low ones */
+        uint32_t low = 0;
         for (int i = 0; i < 6; i++) {
             uint32_t two = grrl_random_next(&state_);
-            sum += (two >> 16) + (two & 0xffffu);
+            both += two;
+            low += two & 0xffffu;
         }
+        uint32_t sum = static_cast<uint32_t>((both - low) >> 16) + low;
         return (static_cast<double>(sum) - 6.0 * 65535.0) / 65536.0;
     }
 

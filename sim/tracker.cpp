@@ -141,12 +141,15 @@ void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &fram
 {
     const Circle object = circle_around(links_, poses);
     std::vector<Vec2> axis; /* of each link: one sine and cosine for all its features */
+    axis.reserve(poses.size());
     for (const Pose &pose : poses)
         axis.push_back(direction(pose.angle));
-    size_t n = 0;
-    frame.features.resize(features_.size());
-    for (uint32_t id = 0; id < features_.size(); id++) {
-        const Feature &feature = features_[id];
+    const uint32_t count = static_cast<uint32_t>(features_.size());
+    const Feature *const features = features_.data();
+    frame.features.resize(count);
+    TrackedFeature *seen = frame.features.data();
+    for (uint32_t id = 0; id < count; id++) {
+        const Feature &feature = features[id];
         Vec2 point = feature.place_m;
         if (feature.link >= 0) {
             size_t link = static_cast<size_t>(feature.link);
@@ -162,9 +165,9 @@ void Tracker::observe(const std::vector<Pose> &poses, Random &noise, Frame &fram
         }
         double x = point.x + params_.noise_sigma_m * noise.normal();
         double y = point.y + params_.noise_sigma_m * noise.normal();
-        frame.features[n++] = {id, x, y};
+        *seen++ = {id, x, y};
     }
-    frame.features.resize(n);
+    frame.features.resize(static_cast<size_t>(seen - frame.features.data()));
 }
 
 } // namespace grrl_sim

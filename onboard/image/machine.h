@@ -5,6 +5,7 @@
 #ifndef ONBOARD_MACHINE_H
 #define ONBOARD_MACHINE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -16,13 +17,16 @@ _Noreturn void machine_exit(uint32_t code);
 /* Copies the command line after the image's name, zero-terminated; returns its length. */
 size_t machine_arguments(char *text, size_t capacity);
 
-/* Returns a negative number if there is no such file. */
-intptr_t machine_open(const char *path);
+/* Returns a negative number if there is no such file. length: of the path. */
+intptr_t machine_open(const char *path, size_t length);
 
 /* Returns the number of bytes read. */
 size_t machine_read(intptr_t file, void *bytes, size_t size);
 
 void machine_write(const char *text);
+
+/* Whether two texts are equal; strcmp takes 700 bytes of flash. */
+bool machine_is(const char *text, const char *expected);
 
 /* Waits for the next byte from the serial line; sends one. */
 uint8_t machine_serial_get(void);

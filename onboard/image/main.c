@@ -51,7 +51,7 @@ static void write_hash(const char *name, uint64_t hash)
     machine_write(digits);
 }
 
-static void write_number(uint64_t number)
+static void write_number(size_t number)
 {
     char digits[24];
     int at = 23;
@@ -64,11 +64,28 @@ static void write_number(uint64_t number)
     machine_write(digits + at);
 }
 
-static void write_line(const char *name, uint64_t number)
+static void write_line(const char *name, size_t number)
 {
     machine_write(name);
     write_number(number);
     machine_write("\n");
+}
+
+/* Bit by bit: the C library's division of 64 bits takes 700 bytes. The result must fit. */
+static uint32_t divide(uint64_t number, uint32_t by)
+{
+    uint64_t rest = 0;
+    uint32_t result = 0;
+    for (int i = 0; i < 64; i++) {
+        rest = rest << 1 | number >> 63;
+        number <<= 1;
+        result <<= 1;
+        if (rest >= by) {
+            rest -= by;
+            result |= 1u;
+        }
+    }
+    return result;
 }
 
 /* The number of steps, and the mean and maximum of instructions. */
@@ -80,8 +97,8 @@ static void write_costs(void)
         machine_write("cost ");
         machine_write(names[i]);
         write_number(cost->n);
-        write_number(machine_instructions(cost->sum) / (cost->n > 0 ? cost->n : 1));
-        write_number(machine_instructions(cost->most));
+        write_number(divide(machine_instructions(cost->sum), cost->n > 0 ? cost->n : 1));
+        write_number((uint32_t)machine_instructions(cost->most));
         machine_write("\n");
     }
 }
@@ -105,9 +122,9 @@ static void write_memory(void)
     write_line("evictions", used.evictions);
 }
 
-static int replay(const char *path)
+static int replay(const char *path, size_t length)
 {
-    input.file = machine_open(path);
+    input.file = machine_open(path, length);
     if (input.file < 0) {
         machine_write("there is no such recording\n");
         return EXIT_USAGE;
@@ -139,8 +156,8 @@ static void write_worst(void)
     static const struct grrl_policy_type *const offered[] = {ONBOARD_POLICIES};
     for (size_t i = 0; i < sizeof offered / sizeof offered[0]; i++) {
         machine_write("worst ");
-        write_line(offered[i]->name,
-                   machine_instructions(worst_decision(&controller, offered[i], machine_count)));
+        write_line(offered[i]->name, (uint32_t)machine_instructions(
+                                         worst_decision(&controller, offered[i], machine_count)));
     }
 }
 
@@ -165,18 +182,20 @@ int main(void);
 
 int main(void)
 {
-    (void)machine_arguments(arguments, sizeof arguments);
-    const char *first = strchr(arguments, ' ');
-    first = first != NULL ? first + 1 : "";
-    if (strcmp(first, "serve") == 0)
+    size_t length = machine_arguments(arguments, sizeof arguments);
+    const char *first = arguments; /* after the image's name */
+    while (*first != ' ' && *first != '\0')
+        first++;
+    first += *first == ' ' ? 1 : 0;
+    if (machine_is(first, "serve"))
         serve();
     if (strncmp(first, "fault ", 6) == 0) {
         machine_provoke(first + 6);
         return EXIT_FINE;
     }
     if (strncmp(first, "replay ", 7) == 0)
-        return replay(first + 7);
-    if (strcmp(first, "worst") == 0) {
+        return replay(first + 7, length - (size_t)(first + 7 - arguments));
+    if (machine_is(first, "worst")) {
         write_worst();
         return EXIT_FINE;
     }

@@ -39,6 +39,8 @@ static const struct size sizes[] = {
     SIZE(grrl_signature),
     SIZE(grrl_paths),
     SIZE(grrl_match_step),
+    SIZE(grrl_match_growth),
+    SIZE(grrl_match_side),
     SIZE(grrl_match_plan),
     SIZE(grrl_match),
     SIZE(grrl_canonical),

@@ -175,7 +175,7 @@ static void check_scene(uint8_t a, uint8_t b)
         assert_near((double)fast.turn_var / slow.turn_var, 1.0, 1e-3);
         assert_near((double)fast.shift_var / slow.shift_var, 1.0, 1e-3);
     }
-    assert_near(grrl_apart_evidence(&scene, a, b), evidence, 5e-3);
+    assert_near(grrl_apart_evidence(&scene, a, b, 1e9f), evidence, 5e-3);
     bool turned = turns > 1.0 && slow.turn > 5.0 * sqrt(slow.turn_var);
     bool shifted = shifts > 1.0 && slow.shift2 > 25.0 * slow.shift_var;
     bool doubtless = turns >= 6.0 * slack || shifts >= 6.0 * slack;

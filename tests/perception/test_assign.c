@@ -207,6 +207,20 @@ static void make_scene(int n_bodies, int n_features, int n_keyframes)
     }
 }
 
+static uint8_t best_now(uint16_t slot, uint32_t changed)
+{
+    struct grrl_assign_origins origins;
+    grrl_assign_find_origins(&scene, &origins);
+    return grrl_assign_best(&scene, &origins, slot, changed);
+}
+
+static bool fits_elsewhere_now(uint16_t slot, uint16_t n_own)
+{
+    struct grrl_assign_origins origins;
+    grrl_assign_find_origins(&scene, &origins);
+    return grrl_assign_fits_elsewhere(&scene, &origins, slot, n_own);
+}
+
 static int compared;
 static int doubtful;
 
@@ -227,12 +241,12 @@ static void check_scene(void)
         check(grrl_assign_moves(&scene, i), expected);
         doubt = 1.0;
         expected = slow_best(i);
-        check(grrl_assign_best(&scene, i), expected);
+        check(best_now(i, UINT32_MAX), expected);
         uint16_t n_own = (uint16_t)scene_int(4, 12);
         doubt = 1.0;
         if (scene.body_of[i] < scene.n_bodies) {
             expected = slow_fits_elsewhere(i, n_own);
-            check(grrl_assign_fits_elsewhere(&scene, i, n_own), expected);
+            check(fits_elsewhere_now(i, n_own), expected);
         }
     }
     for (uint8_t a = 0; a < scene.n_bodies; a++) {
@@ -282,13 +296,46 @@ static void features_find_their_body(void **state)
             uint8_t body = scene.body_of[i];
             scene.has_moved[i] = true;
             scene.body_of[i] = GRRL_FEATURE_NONE;
-            wrong += grrl_assign_best(&scene, i) != body;
+            wrong += best_now(i, UINT32_MAX) != body;
             scene.body_of[i] = body;
-            wrong += grrl_assign_best(&scene, i) != body;
+            wrong += best_now(i, UINT32_MAX) != body;
         }
     }
     print_message("%d of %d features elsewhere\n", wrong, 2 * 20 * 36);
     assert_true(wrong <= 4);
+}
+
+/* After some features have changed sides, only those bodies need to be tried. */
+static void bodies_that_did_not_change_need_not_be_tried(void **state)
+{
+    (void)state;
+    scene_seed("bodies_that_did_not_change_need_not_be_tried");
+    int moved = 0;
+    for (int run = 0; run < 60; run++) {
+        make_scene(scene_int(3, 5), scene_int(4, 9), scene_int(2, 14));
+        for (int round = 0; round < 3; round++) {
+            uint32_t changed = 0;
+            for (uint16_t i = 0; i < scene.n_slots; i++) {
+                uint8_t was = scene.body_of[i];
+                uint8_t best = best_now(i, UINT32_MAX);
+                scene.body_of[i] = best;
+                changed |= was == best || was >= scene.n_bodies ? 0u : UINT32_C(1) << was;
+                changed |= was == best || best >= scene.n_bodies ? 0u : UINT32_C(1) << best;
+                moved += was != best ? 1 : 0;
+            }
+            for (uint8_t b = 0; b < scene.n_bodies; b++) {
+                uint16_t slots[GRRL_MAX_FEATURES];
+                uint16_t n = grrl_rigid_slots(&scene, b, slots);
+                if ((changed >> b & 1u) != 0)
+                    grrl_rigid_fit(&scene, slots, n, scene.shape, &scene.pose[0][b],
+                                   GRRL_MAX_LINKS);
+            }
+            for (uint16_t i = 0; i < scene.n_slots; i++)
+                assert_int_equal(best_now(i, changed), best_now(i, UINT32_MAX));
+        }
+    }
+    print_message("%d features moved\n", moved);
+    assert_true(moved > 100);
 }
 
 int main(void)
@@ -297,6 +344,7 @@ int main(void)
         cmocka_unit_test(features_of_random_bodies),
         cmocka_unit_test(features_at_capacity),
         cmocka_unit_test(features_find_their_body),
+        cmocka_unit_test(bodies_that_did_not_change_need_not_be_tried),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,7 +161,9 @@ static void assign_all(void)
     for (int round = 0; round < 6 && changed; round++) {
         changed = false;
         for (uint16_t i = 0; i < copy.n_slots; i++) {
-            uint8_t best = grrl_assign_best(&copy, i);
+            struct grrl_assign_origins origins;
+            grrl_assign_find_origins(&copy, &origins);
+            uint8_t best = grrl_assign_best(&copy, &origins, i, UINT32_MAX);
             changed = changed || best != copy.body_of[i];
             copy.body_of[i] = best;
         }
@@ -245,8 +247,10 @@ static void take_out_redundant(void)
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = features_of(b, slots);
         int own = 0;
+        struct grrl_assign_origins origins;
+        grrl_assign_find_origins(&copy, &origins);
         for (int i = 0; i < n; i++)
-            own += !grrl_assign_fits_elsewhere(&copy, slots[i], n);
+            own += !grrl_assign_fits_elsewhere(&copy, &origins, slots[i], n);
         if (own < least_own()) {
             take_out(b);
             assign_all();

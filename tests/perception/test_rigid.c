@@ -400,6 +400,44 @@ static void places_and_costs(void **state)
     }
 }
 
+/* Where two keyframes rule a feature out, its cost is too high wherever it lies; most of those that
+ * cost too much are ruled out. */
+static void far_features_are_off(void **state)
+{
+    (void)state;
+    scene_seed("far_features_are_off");
+    int off = 0;
+    int costly = 0;
+    for (int run = 0; run < 200; run++) {
+        double size = pow(10.0, scene_uniform(-3.5, -1.0));
+        (void)scene_start(scene_int(1, GRRL_MAX_KEYFRAMES));
+        (void)scene_add_body(scene_int(2, 10));
+        (void)scene_add_body(scene_int(2, 10));
+        scene_wander(0, size, 10.0 * size);
+        scene_wander(1, size, 10.0 * size);
+        scene_see(1.0, 0.2);
+        scene_fit();
+        for (uint16_t i = 0; i < scene.n_slots; i++) {
+            const struct grrl_perception_pose *of_other = &scene.pose[0][1];
+            float enough = (float)scene_uniform(0.0, 8.0) * (float)scene.n_keyframes;
+            struct grrl_vec2 local = {0.0f, 0.0f};
+            uint16_t n;
+            bool is_off = grrl_rigid_is_off(&scene, i, of_other, GRRL_MAX_LINKS, enough);
+            (void)grrl_rigid_place(&scene, i, of_other, GRRL_MAX_LINKS, &local);
+            for (int at = 0; at < 4; at++) {
+                float cost =
+                    grrl_rigid_cost(&scene, i, local, of_other, GRRL_MAX_LINKS, GRRL_COST_ANY, &n);
+                assert_true(!is_off || cost > enough);
+                costly += at == 0 && cost > enough ? 1 : 0;
+                local.x += (float)scene_uniform(-3.0 * size, 3.0 * size);
+            }
+            off += is_off ? 1 : 0;
+        }
+    }
+    print_message("%d of %d costly features found\n", off, costly);
+    assert_true(4 * off > costly);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -409,6 +447,7 @@ int main(void)
         cmocka_unit_test(points_in_one_place_have_no_pose),
         cmocka_unit_test(points_off_the_body_are_left_out),
         cmocka_unit_test(places_and_costs),
+        cmocka_unit_test(far_features_are_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,12 +54,13 @@ static float saved_apart(const struct grrl_perception *p, const struct grrl_rigi
     return saved;
 }
 
+/* A sum that has reached `enough` is not finished. */
 static float evidence_of(const struct grrl_perception *p, const struct grrl_rigid_group *together,
-                         uint8_t a, uint8_t b)
+                         uint8_t a, uint8_t b, float enough)
 {
     float evidence = 0.0f;
     float allowance = MERGE_FREE * p->config.slack;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes && evidence < enough; k++) {
         if (!(p->pose[k][a].weight > 0.0f) || !(p->pose[k][b].weight > 0.0f) ||
             !(together->pose[k].weight > 0.0f))
             continue;
@@ -79,11 +80,11 @@ void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
     grrl_rigid_fit(p, together->slot, together->n, together->shape, together->pose, 1);
 }
 
-float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b)
+float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b, float enough)
 {
     struct grrl_rigid_group together;
     grrl_apart_fit_both(p, a, b, &together);
-    return evidence_of(p, &together, a, b);
+    return evidence_of(p, &together, a, b, enough);
 }
 
 /* Widens an interval so that x is in it. */
@@ -209,7 +210,8 @@ bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
         return false; /* clearly two bodies; saves the much more expensive fit of both together */
     if (!grrl_assign_bodies_may_share(p, a, b))
         return false;
-    return !far || grrl_apart_evidence(p, a, b) < MERGE_EVIDENCE * p->config.slack;
+    float enough = MERGE_EVIDENCE * p->config.slack;
+    return !far || grrl_apart_evidence(p, a, b, enough) < enough;
 }
 
 bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b)

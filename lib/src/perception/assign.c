@@ -36,24 +36,41 @@ bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot)
 {
     struct grrl_vec2 mean = {0.0f, 0.0f};
     float weight = 0.0f;
+    uint16_t n = 0;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         mean = grrl_vec2_add(mean, grrl_vec2_scale(p->keyframe[k].point[slot], w));
         weight += w;
+        n = (uint16_t)(n + (w > 0.0f ? 1 : 0));
     }
-    uint16_t n = 0;
+    if (n == 0)
+        return false;
+    mean = grrl_vec2_scale(mean, 1.0f / weight);
+    float limit = cost_limit(p, n);
     float cost = 0.0f;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+    for (uint8_t k = 0; k < p->n_keyframes && cost < limit; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
         if (w > 0) {
-            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot],
-                                           grrl_vec2_scale(mean, 1.0f / weight)) /
+            float d2 = grrl_vec2_distance2(p->keyframe[k].point[slot], mean) /
                        grrl_perception_variance(p, w);
             cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
-            n++;
         }
     }
-    return n > 0 && cost >= cost_limit(p, n);
+    return cost >= limit;
+}
+
+void grrl_assign_find_origins(const struct grrl_perception *p, struct grrl_assign_origins *origins)
+{
+    int16_t balance[GRRL_MAX_LINKS] = {0};
+    *origins = (struct grrl_assign_origins){{0}, {0}};
+    for (uint16_t i = p->n_slots; i-- > 0;) {
+        uint8_t body = p->body_of[i];
+        if (body < p->n_bodies) {
+            balance[body] = (int16_t)(balance[body] + (p->has_moved[i] ? 1 : -1));
+            origins->has_moved[body] = balance[body] > 0;
+            origins->blob[body] = p->blob_of[i] != 0 ? p->blob_of[i] : origins->blob[body];
+        }
+    }
 }
 
 bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body)
@@ -75,16 +92,19 @@ static uint8_t blob_of_body(const struct grrl_perception *p, uint8_t body)
 
 /* Separate blobs stay separate until motion joins them: whatever has never moved looks rigid with
  * everything else that has never moved. */
-static bool may_share(const struct grrl_perception *p, uint8_t blob, bool moved, uint8_t body)
+static bool may_share(const struct grrl_assign_origins *origins, uint8_t blob, bool moved,
+                      uint8_t body)
 {
-    uint8_t other = blob_of_body(p, body);
-    return blob == 0 || other == 0 || blob == other ||
-           (moved && grrl_assign_body_has_moved(p, body));
+    uint8_t other = origins->blob[body];
+    return blob == 0 || other == 0 || blob == other || (moved && origins->has_moved[body]);
 }
 
 bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    return may_share(p, blob_of_body(p, a), grrl_assign_body_has_moved(p, a), b);
+    uint8_t one = blob_of_body(p, a);
+    uint8_t other = blob_of_body(p, b);
+    return one == 0 || other == 0 || one == other ||
+           (grrl_assign_body_has_moved(p, a) && grrl_assign_body_has_moved(p, b));
 }
 
 /*
@@ -126,16 +146,17 @@ struct candidate {
  * max_limit is the limit for all keyframes that saw the feature: a sum that exceeds the best with
  * it is not finished.
  */
-static void try_body(const struct grrl_perception *p, uint16_t slot, uint8_t body, float max_limit,
-                     struct candidate *best)
+static void try_body(const struct grrl_perception *p, const struct grrl_assign_origins *origins,
+                     uint16_t slot, uint8_t body, float max_limit, struct candidate *best)
 {
     bool is_own = body == p->body_of[slot];
     struct grrl_vec2 local = p->shape[slot];
     uint16_t n = 0;
-    if (!is_own && (!may_share(p, p->blob_of[slot], p->has_moved[slot], body) ||
+    float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
+    if (!is_own && (!may_share(origins, p->blob_of[slot], p->has_moved[slot], body) ||
+                    grrl_rigid_is_off(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, enough) ||
                     !grrl_rigid_place(p, slot, &p->pose[0][body], GRRL_MAX_LINKS, &local)))
         return;
-    float enough = best->excess + max_limit + (is_own ? OWN_COST : 0.0f) + ROUNDING_COST;
     float cost = grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, enough, &n);
     if (n == 0)
         return;
@@ -157,18 +178,20 @@ bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t
     return n >= least && cost < cost_limit(p, n);
 }
 
-uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
+uint8_t grrl_assign_best(const struct grrl_perception *p, const struct grrl_assign_origins *origins,
+                         uint16_t slot, uint32_t changed)
 {
     uint8_t own = p->body_of[slot];
+    uint32_t tried = own < p->n_bodies && (changed >> own & 1u) == 0 ? changed : UINT32_MAX;
     struct candidate cheapest = {GRRL_FEATURE_NONE, 0.0f};
     bool is_table = own == GRRL_FEATURE_BACKGROUND && p->blob_of[slot] == 0;
     float max_limit = cost_limit(p, keyframes_that_saw(p, slot));
     /* Its own body first: it is most often the best, and the others are then given up early. */
     if (own < p->n_bodies)
-        try_body(p, slot, own, max_limit, &cheapest);
+        try_body(p, origins, slot, own, max_limit, &cheapest);
     for (uint8_t b = 0; b < p->n_bodies && !is_table; b++) /* the table moves with nothing */
-        if (b != own)
-            try_body(p, slot, b, max_limit, &cheapest);
+        if (b != own && (tried >> b & 1u) != 0)
+            try_body(p, origins, slot, b, max_limit, &cheapest);
     uint8_t best = cheapest.body;
     if (best == GRRL_FEATURE_NONE && own < p->n_bodies && stays_close(p, slot))
         best = own;
@@ -181,7 +204,9 @@ uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot)
  * Whether a feature would fit some other body as well. The pose of a body of n features follows
  * their noise, which reduces each residual by about 3 / (2 n).
  */
-bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own)
+bool grrl_assign_fits_elsewhere(const struct grrl_perception *p,
+                                const struct grrl_assign_origins *origins, uint16_t slot,
+                                uint16_t n_own)
 {
     uint16_t n = 0;
     uint8_t own = p->body_of[slot];
@@ -192,7 +217,8 @@ bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, 
                     2.0f * (float)n * (1.0f - (1.0f - leverage) / (1.0f + leverage));
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         struct grrl_vec2 local;
-        if (b != own && may_share(p, p->blob_of[slot], p->has_moved[slot], b) &&
+        if (b != own && may_share(origins, p->blob_of[slot], p->has_moved[slot], b) &&
+            !grrl_rigid_is_off(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, allowed + ROUNDING_COST) &&
             grrl_rigid_place(p, slot, &p->pose[0][b], GRRL_MAX_LINKS, &local) &&
             grrl_rigid_cost(p, slot, local, &p->pose[0][b], GRRL_MAX_LINKS, allowed, &n) <= allowed)
             return true;

@@ -86,25 +86,36 @@ static void merge_bodies(struct grrl_perception *p, bool at_rest)
     }
 }
 
-/* Refits only bodies that lost or gained features: the fit of the others would be the same. */
-static bool reassign_once(struct grrl_perception *p)
+/* Bodies, one bit each. */
+#define ALL_BODIES UINT32_MAX
+_Static_assert(GRRL_MAX_LINKS <= 32, "a bit for each body");
+
+static uint32_t bit_of(const struct grrl_perception *p, uint8_t body)
 {
-    bool changed[GRRL_MAX_LINKS] = {false};
+    return body < p->n_bodies ? UINT32_C(1) << body : 0u;
+}
+
+/* Refits only bodies that lost or gained features: the fit of the others would be the same.
+ * *changed: those of the last round, then those of this one. */
+static bool reassign_once(struct grrl_perception *p, uint32_t *changed)
+{
+    struct grrl_assign_origins origins;
+    uint32_t before = *changed;
     bool any = false;
+    *changed = 0;
+    grrl_assign_find_origins(p, &origins);
     for (uint16_t i = 0; i < p->n_slots; i++) {
         uint8_t was = p->body_of[i];
-        uint8_t best = grrl_assign_best(p, i);
+        uint8_t best = grrl_assign_best(p, &origins, i, before | *changed);
         if (was == best)
             continue;
         any = true;
         p->body_of[i] = best;
-        if (was < p->n_bodies)
-            changed[was] = true;
-        if (best < p->n_bodies)
-            changed[best] = true;
+        *changed |= bit_of(p, was) | bit_of(p, best);
+        grrl_assign_find_origins(p, &origins);
     }
     for (uint8_t b = 0; b < p->n_bodies; b++)
-        if (changed[b])
+        if ((*changed & bit_of(p, b)) != 0)
             fit_body(p, b);
     return any;
 }
@@ -113,8 +124,9 @@ static bool reassign_once(struct grrl_perception *p)
  * nothing if no body has changed since. */
 static void reassign(struct grrl_perception *p)
 {
+    uint32_t changed = ALL_BODIES;
     for (int round = 0; round < REASSIGN_ROUNDS && !p->is_assigned; round++)
-        p->is_assigned = !reassign_once(p);
+        p->is_assigned = !reassign_once(p, &changed);
 }
 
 /* Features that only one body explains, of the min_features that it needs. In pictures a link may
@@ -180,11 +192,14 @@ static void dissolve_redundant(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies && p->n_bodies > 1; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
+        struct grrl_assign_origins origins;
         uint16_t n = grrl_rigid_slots(p, b, slots);
         uint16_t least = least_of_its_own(p);
         uint16_t unique = 0;
+        grrl_assign_find_origins(p, &origins);
         for (uint16_t i = 0; i < n && unique < least; i++)
-            unique = (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, slots[i], n) ? 0 : 1));
+            unique =
+                (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, &origins, slots[i], n) ? 0 : 1));
         if (unique < least) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;

@@ -71,6 +71,7 @@ float grrl_consensus_misfit(const struct grrl_perception *p, const uint16_t *slo
 struct choice_of_keyframes {
     uint8_t n;
     uint8_t k[SPLIT_KEYFRAMES];
+    float variance[GRRL_MAX_FEATURES]; /* of the features, by place, in the reference keyframe */
 };
 
 /* Number of features seen in both keyframes. */
@@ -226,7 +227,10 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
     float cost[GRRL_MAX_FEATURES] = {0.0f};
     float count[GRRL_MAX_FEATURES] = {0.0f};
     const float lost = INLIER_COST * (float)chosen->n; /* above it no keyframe to come helps */
-    unsigned told = 0;                                 /* keyframes */
+    const float noise2 = p->config.noise_m * p->config.noise_m;
+    const float model = grrl_perception_model_error(p);
+    const float model2 = model * model;
+    unsigned told = 0; /* keyframes */
     for (uint8_t c = 0; c < chosen->n; c++) {
         uint8_t k = chosen->k[c];
         struct displacement d;
@@ -242,7 +246,7 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
                 grrl_vec2_scale(grrl_vec2_sub(p->keyframe[k0].point[slots[i]], d.from), d.size);
             struct grrl_vec2 y = grrl_vec2_sub(p->keyframe[k].point[slots[i]], d.to);
             struct grrl_vec2 r = {y.x - (d.c * x.x - d.s * x.y), y.y - (d.s * x.x + d.c * x.y)};
-            float variance = (grrl_perception_variance(p, w0) + grrl_perception_variance(p, w1)) *
+            float variance = (chosen->variance[i] + (noise2 / (float)w1 + model2)) *
                              (1.0f + 1.0f / d.weight + grrl_vec2_dot(x, x) / (2.0f * d.inertia));
             float d2 = grrl_vec2_dot(r, r) / variance;
             cost[i] += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
@@ -384,6 +388,9 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     uint8_t k0;
     bool is_short = grrl_consensus_reference(p, slots, n, score, &k0);
     struct choice_of_keyframes chosen = telling_keyframes(p, slots, n, k0, is_short, score);
+    for (uint16_t i = 0; i < n; i++)
+        if (p->keyframe[k0].weight[slots[i]] > 0)
+            chosen.variance[i] = grrl_perception_variance(p, p->keyframe[k0].weight[slots[i]]);
     uint16_t n_members = largest_group(p, slots, n, k0, &chosen, false, members);
     if (n_members < p->config.min_features && !grrl_perception_on_table(p) &&
         !p->config.sizes_change)

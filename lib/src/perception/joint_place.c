@@ -43,42 +43,47 @@ float grrl_joint_half_extent(const struct grrl_perception *p, uint8_t body)
     return grrl_sqrt(far2);
 }
 
-/* The distance from a point in a body's frame to the third nearest feature: a few features near a
- * joint may be assigned to the wrong body. */
-static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
+/* The squared distance from a point in a body's frame to the third nearest of its features: a few
+ * features near a joint may be assigned to the wrong body. */
+static float third_nearest2(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                            struct grrl_vec2 local)
 {
     float nearest2[3] = {1e9f, 1e9f, 1e9f};
-    for (uint16_t i = 0; i < p->n_slots; i++) {
-        if (p->body_of[i] == body) {
-            struct grrl_vec2 d = grrl_vec2_sub(p->shape[i], local);
-            float d2 = grrl_vec2_dot(d, d);
-            for (int at = 0; at < 3; at++) {
-                if (d2 < nearest2[at]) {
-                    float t = nearest2[at];
-                    nearest2[at] = d2;
-                    d2 = t;
-                }
+    for (uint16_t i = 0; i < n; i++) {
+        float d2 = grrl_vec2_distance2(p->shape[slots[i]], local);
+        for (int at = 0; at < 3; at++) {
+            if (d2 < nearest2[at]) {
+                float t = nearest2[at];
+                nearest2[at] = d2;
+                d2 = t;
             }
         }
     }
-    return grrl_sqrt(nearest2[2]);
+    return nearest2[2];
+}
+
+static float distance_to_body(const struct grrl_perception *p, uint8_t body, struct grrl_vec2 local)
+{
+    uint16_t slots[GRRL_MAX_FEATURES];
+    uint16_t n = grrl_rigid_slots(p, body, slots);
+    return grrl_sqrt(third_nearest2(p, slots, n, local));
 }
 
 /* Distance between two bodies in keyframe k: the smallest from a feature of b to the third nearest
  * of a. */
 static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, uint8_t k)
 {
-    const struct grrl_perception_pose *pb = &p->pose[k][b];
-    const struct grrl_perception_pose *pa = &p->pose[k][a];
-    float best = 1e9f;
+    uint16_t slots[GRRL_MAX_FEATURES];
+    uint16_t n = grrl_rigid_slots(p, a, slots);
+    float best2 = 1e18f;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         if (p->body_of[i] == b) {
-            struct grrl_vec2 world = grrl_to_world(pb, p->shape[i]);
-            float d = distance_to_body(p, a, grrl_to_local(pa, world));
-            best = d < best ? d : best;
+            struct grrl_vec2 world = grrl_to_world(&p->pose[k][b], p->shape[i]);
+            float d2 = third_nearest2(p, slots, n, grrl_to_local(&p->pose[k][a], world));
+            best2 = d2 < best2 ? d2 : best2;
         }
     }
-    return best;
+    return grrl_sqrt(best2);
 }
 
 /* Whether a third body lies closer to the pivot than `distance` in the last keyframe that saw a. */

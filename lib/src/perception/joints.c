@@ -78,6 +78,9 @@ struct relative {
     struct grrl_vec2 d; /* origin of b in a */
     const struct grrl_perception_pose *pa;
     const struct grrl_perception_pose *pb;
+    float turn; /* from the mean rotation */
+    float turn_variance;
+    float middle_variance; /* of a point halfway between the bodies */
 };
 
 struct motion {
@@ -89,35 +92,8 @@ struct motion {
     float bend_b;
     float c0; /* mean rotation */
     float s0;
+    struct grrl_vec2 middle; /* mean of d, not weighted */
 };
-
-static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struct motion *motion)
-{
-    motion->n = 0;
-    motion->noise2 = p->config.noise_m * p->config.noise_m;
-    motion->bend_a = p->bend_m2[a];
-    motion->bend_b = p->bend_m2[b];
-    float c = 0.0f;
-    float s = 0.0f;
-    for (uint8_t k = 0; k < p->n_keyframes; k++) {
-        const struct grrl_perception_pose *pa = &p->pose[k][a];
-        const struct grrl_perception_pose *pb = &p->pose[k][b];
-        if (!(pa->weight > 0.0f) || !(pb->weight > 0.0f))
-            continue;
-        motion->at_rest[motion->n] = p->keyframe[k].at_rest;
-        struct relative *r = &motion->at[motion->n++];
-        r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
-        r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
-        r->d = grrl_origin_in(pa, pb);
-        r->pa = pa;
-        r->pb = pb;
-        c += r->c;
-        s += r->s;
-    }
-    float length = grrl_sqrt(c * c + s * s);
-    motion->c0 = length > 0.0f ? c / length : 1.0f;
-    motion->s0 = length > 0.0f ? s / length : 0.0f;
-}
 
 /* Variance per axis of the distance between a point of a and a point of b, given their squared
  * distances from the origins of the bodies; includes the model error of both. */
@@ -146,6 +122,45 @@ static float turn_variance(const struct grrl_perception *p, const struct motion 
 static float turn_from_mean(const struct motion *motion, const struct relative *r)
 {
     return grrl_atan2(r->s * motion->c0 - r->c * motion->s0, r->c * motion->c0 + r->s * motion->s0);
+}
+
+static void collect(const struct grrl_perception *p, uint8_t a, uint8_t b, struct motion *motion)
+{
+    motion->n = 0;
+    motion->noise2 = p->config.noise_m * p->config.noise_m;
+    motion->bend_a = p->bend_m2[a];
+    motion->bend_b = p->bend_m2[b];
+    float c = 0.0f;
+    float s = 0.0f;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *pa = &p->pose[k][a];
+        const struct grrl_perception_pose *pb = &p->pose[k][b];
+        if (!(pa->weight > 0.0f) || !(pb->weight > 0.0f))
+            continue;
+        motion->at_rest[motion->n] = p->keyframe[k].at_rest;
+        struct relative *r = &motion->at[motion->n++];
+        r->c = pa->pose.c * pb->pose.c + pa->pose.s * pb->pose.s;
+        r->s = pa->pose.c * pb->pose.s - pa->pose.s * pb->pose.c;
+        r->d = grrl_origin_in(pa, pb);
+        r->pa = pa;
+        r->pb = pb;
+        c += r->c;
+        s += r->s;
+    }
+    float length = grrl_sqrt(c * c + s * s);
+    motion->c0 = length > 0.0f ? c / length : 1.0f;
+    motion->s0 = length > 0.0f ? s / length : 0.0f;
+    motion->middle = (struct grrl_vec2){0.0f, 0.0f};
+    for (uint8_t k = 0; k < motion->n; k++)
+        motion->middle = grrl_vec2_add(motion->middle,
+                                       grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
+    float lever2 = 0.25f * grrl_vec2_dot(motion->middle, motion->middle);
+    for (uint8_t k = 0; k < motion->n; k++) {
+        struct relative *r = &motion->at[k];
+        r->turn = turn_from_mean(motion, r);
+        r->turn_variance = turn_variance(p, motion, r);
+        r->middle_variance = point_variance(p, motion, r, lever2, lever2);
+    }
 }
 
 /* Whether a keyframe that the fit misses by chi2 may itself be wrong. At rest many frames are
@@ -237,7 +252,7 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
     }
     fit->lower = 0.0f;
     fit->upper = 0.0f;
-    float first = turn_from_mean(motion, &motion->at[0]);
+    float first = motion->at[0].turn;
     float least_variance = 1e9f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
@@ -247,11 +262,10 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
             continue;
         }
         chi2 += missed;
-        float turn = grrl_wrap_rad(turn_from_mean(motion, r) - first);
-        float variance = turn_variance(p, motion, r);
+        float turn = grrl_wrap_rad(r->turn - first);
         fit->lower = turn < fit->lower ? turn : fit->lower;
         fit->upper = turn > fit->upper ? turn : fit->upper;
-        least_variance = variance < least_variance ? variance : least_variance;
+        least_variance = r->turn_variance < least_variance ? r->turn_variance : least_variance;
     }
     chi2 += lever_a2 / (sa * sa) + lever_b2 / (sb * sb);
     fit->excess = chi2 - 2.0f * (float)motion->n + 4.0f;
@@ -263,38 +277,26 @@ static void fit_revolute(const struct grrl_perception *p, const struct motion *m
 }
 
 /* The sliding point halfway between the bodies, so that the turn noise of both counts equally. */
-static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r,
-                                    struct grrl_vec2 middle)
+static struct grrl_vec2 slide_point(const struct motion *motion, const struct relative *r)
 {
+    struct grrl_vec2 middle = motion->middle;
     float turn = r->s * motion->c0 - r->c * motion->s0;
     return (struct grrl_vec2){r->d.x - 0.5f * (middle.x - turn * middle.y),
                               r->d.y - 0.5f * (middle.y + turn * middle.x)};
 }
 
-/* A sliding pair: the mean of b's origin in a's frame, not weighted, ... */
+/* The line on which a pair slides: a point on it, and the sum of weights. */
 struct slide {
-    struct grrl_vec2 middle;
-    float lever2;          /* ... its squared distance from the point halfway between the bodies, */
-    struct grrl_vec2 mean; /* ... a point on the line, and the sum of weights */
+    struct grrl_vec2 mean;
     float w;
 };
 
-static float slide_weight(const struct grrl_perception *p, const struct motion *motion, uint8_t k,
-                          float lever2)
-{
-    return 1.0f / point_variance(p, motion, &motion->at[k], lever2, lever2);
-}
-
-static struct slide find_middle(const struct grrl_perception *p, const struct motion *motion)
+static struct slide find_middle(const struct motion *motion)
 {
     struct slide slide = {.w = 0.0f};
-    for (uint8_t k = 0; k < motion->n; k++)
-        slide.middle =
-            grrl_vec2_add(slide.middle, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
-    slide.lever2 = 0.25f * grrl_vec2_dot(slide.middle, slide.middle);
     for (uint8_t k = 0; k < motion->n; k++) {
-        float wk = slide_weight(p, motion, k, slide.lever2);
-        struct grrl_vec2 point = slide_point(motion, &motion->at[k], slide.middle);
+        float wk = 1.0f / motion->at[k].middle_variance;
+        struct grrl_vec2 point = slide_point(motion, &motion->at[k]);
         slide.w += wk;
         slide.mean = grrl_vec2_add(slide.mean, grrl_vec2_scale(point, wk));
     }
@@ -304,16 +306,15 @@ static struct slide find_middle(const struct grrl_perception *p, const struct mo
 
 /* The line by total least squares: the principal axis of the weighted positions. Returns the sum of
  * squares along it divided by the variance; its inverse is the variance of the direction. */
-static float find_slide_axis(const struct grrl_perception *p, const struct motion *motion,
-                             const struct slide *slide, struct grrl_vec2 *axis)
+static float find_slide_axis(const struct motion *motion, const struct slide *slide,
+                             struct grrl_vec2 *axis)
 {
     float xx = 0.0f;
     float xy = 0.0f;
     float yy = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
-        struct grrl_vec2 q =
-            grrl_vec2_sub(slide_point(motion, &motion->at[k], slide->middle), slide->mean);
-        float wk = slide_weight(p, motion, k, slide->lever2);
+        struct grrl_vec2 q = grrl_vec2_sub(slide_point(motion, &motion->at[k]), slide->mean);
+        float wk = 1.0f / motion->at[k].middle_variance;
         xx += wk * q.x * q.x;
         xy += wk * q.x * q.y;
         yy += wk * q.y * q.y;
@@ -329,19 +330,17 @@ static float find_slide_axis(const struct grrl_perception *p, const struct motio
 static void fit_prismatic(const struct grrl_perception *p, const struct motion *motion,
                           struct grrl_joint_fit *fit)
 {
-    struct slide slide = find_middle(p, motion);
-    float major = find_slide_axis(p, motion, &slide, &fit->axis_in_a);
+    struct slide slide = find_middle(motion);
+    float major = find_slide_axis(motion, &slide, &fit->axis_in_a);
     float chi2 = 0.0f;
-    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0], slide.middle), fit->axis_in_a);
+    float first = grrl_vec2_dot(slide_point(motion, &motion->at[0]), fit->axis_in_a);
     fit->lower = 0.0f;
     fit->upper = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
-        struct grrl_vec2 point = slide_point(motion, r, slide.middle);
+        struct grrl_vec2 point = slide_point(motion, r);
         float across = grrl_vec2_cross(fit->axis_in_a, grrl_vec2_sub(point, slide.mean));
-        float turn = turn_from_mean(motion, r);
-        float missed = across * across / point_variance(p, motion, r, slide.lever2, slide.lever2) +
-                       turn * turn / turn_variance(p, motion, r);
+        float missed = across * across / r->middle_variance + r->turn * r->turn / r->turn_variance;
         if (is_doubtful(motion, k, missed)) {
             chi2 += MOVING_MISS_MAX;
             continue;
@@ -363,19 +362,14 @@ static void fit_prismatic(const struct grrl_perception *p, const struct motion *
 
 /* The cost of free motion: it pays for the keyframes that differ from a rigid pair, up to a limit.
  */
-static float free_cost(const struct grrl_perception *p, const struct motion *motion)
+static float free_cost(const struct motion *motion)
 {
-    struct grrl_vec2 mean = {0.0f, 0.0f};
-    for (uint8_t k = 0; k < motion->n; k++)
-        mean = grrl_vec2_add(mean, grrl_vec2_scale(motion->at[k].d, 1.0f / (float)motion->n));
-    float lever2 = 0.25f * grrl_vec2_dot(mean, mean);
     float cost = 0.0f;
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
-        struct grrl_vec2 off = grrl_vec2_sub(r->d, mean);
-        float turn = turn_from_mean(motion, r);
-        float rigid = grrl_vec2_dot(off, off) / point_variance(p, motion, r, lever2, lever2) +
-                      turn * turn / turn_variance(p, motion, r);
+        struct grrl_vec2 off = grrl_vec2_sub(r->d, motion->middle);
+        float rigid =
+            grrl_vec2_dot(off, off) / r->middle_variance + r->turn * r->turn / r->turn_variance;
         cost += rigid < FREE_COST ? rigid : FREE_COST;
     }
     return cost < FREE_COST_MAX ? cost : FREE_COST_MAX;
@@ -397,11 +391,10 @@ static float curvature_evidence(const struct grrl_perception *p, const struct mo
     for (uint8_t k = 0; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
         float wk = 1.0f / point_variance(p, motion, r, a2, b2);
-        float turn = turn_from_mean(motion, r);
         float power = wk;
         for (int i = 0; i < 5; i++) {
             m[i] += power;
-            power *= turn;
+            power *= r->turn;
         }
         w += wk;
     }
@@ -428,7 +421,7 @@ static float sliding_evidence(const struct grrl_perception *p, const struct moti
     for (uint8_t k = 1; k < motion->n; k++) {
         const struct relative *r = &motion->at[k];
         float turn = first->c * r->pa->pose.s - first->s * r->pa->pose.c;
-        turned += turn * turn / turn_variance(p, motion, r);
+        turned += turn * turn / r->turn_variance;
         float at = grrl_vec2_dot(r->d, fit->axis_in_a);
         if (motion->at_rest[k]) {
             float slid = at > last ? at - last : last - at;
@@ -507,7 +500,7 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
         return false;
     fit_revolute(p, &motion, grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);
-    float free = free_cost(p, &motion);
+    float free = free_cost(&motion);
     bool is_revolute = revolute.excess < prismatic.excess;
     e->fit = is_revolute ? revolute : prismatic;
     e->type = is_revolute ? GRRL_REVOLUTE : GRRL_PRISMATIC;
@@ -519,9 +512,6 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     float chi2[3] = {revolute.excess, prismatic.excess, untied};
     model_probabilities(chi2, e->p);
     float support = untied - e->fit.excess;
-    float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
-    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) -
-               grrl_joint_distance_cost(p, e) - misfit;
     bool fits = e->fit.excess < MISFIT_BASE + 2.0f * MISFIT_SIGMAS * grrl_sqrt((float)motion.n);
     e->doubt = !e->fit.excited                                        ? GRRL_REASON_LITTLE
                : !sizes_agree(&motion)                                ? GRRL_REASON_SIZES
@@ -531,5 +521,10 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     e->told = e->doubt == GRRL_REASON_NONE;
     if (e->told && !grrl_joint_is_near(p, e, support))
         e->doubt = GRRL_REASON_FAR;
-    return e->doubt == GRRL_REASON_NONE;
+    if (e->doubt != GRRL_REASON_NONE)
+        return false;
+    float misfit = e->fit.excess > 0.0f ? MISFIT_WEIGHT * e->fit.excess : 0.0f;
+    e->order = (support < WELL_SUPPORTED ? support : WELL_SUPPORTED) -
+               grrl_joint_distance_cost(p, e) - misfit;
+    return true;
 }

@@ -3,6 +3,7 @@
  */
 #include "perception/perception_internal.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -413,7 +414,7 @@ static void window_add(struct grrl_perception *p, const struct grrl_frame *frame
     for (uint32_t i = 0; i < frame->n; i++) {
         struct grrl_vec2 point = {frame->x_m[i], frame->y_m[i]};
         float limit = p->config.table_m;
-        if (!(point.x > -limit && point.x < limit && point.y > -limit && point.y < limit)) {
+        if (!(fabsf(point.x) < limit && fabsf(point.y) < limit)) {
             p->counts.refused++; /* also NaN */
             continue;
         }

@@ -135,6 +135,11 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
                       const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n);
 
+/* Whether the cost of a slot exceeds `enough` for sure, wherever its place. Cheap; often false for
+ * costs that do. */
+bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
+                       const struct grrl_perception_pose *poses, size_t stride, float enough);
+
 #define GRRL_COST_ANY 1e9f /* enough for no sum */
 
 /* The members of body `body` (or GRRL_FEATURE_..), as slots. */
@@ -200,12 +205,26 @@ float grrl_cut_hidden_joint(const struct grrl_perception *p, uint8_t body);
 bool grrl_assign_moves(const struct grrl_perception *p, uint16_t slot);
 bool grrl_assign_body_has_moved(const struct grrl_perception *p, uint8_t body);
 
+/* Where bodies come from: the blob of each in the first keyframe, 0: none, and whether it has
+ * moved. Up to date until features change sides. */
+struct grrl_assign_origins {
+    uint8_t blob[GRRL_MAX_LINKS];
+    bool has_moved[GRRL_MAX_LINKS];
+};
+
+void grrl_assign_find_origins(const struct grrl_perception *p, struct grrl_assign_origins *origins);
+
 /* Whether features of bodies a and b may share one body: they come from the same blob, or both
  * moved. */
 bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
-/* The body a feature moves with, or GRRL_FEATURE_.. */
-uint8_t grrl_assign_best(const struct grrl_perception *p, uint16_t slot);
+/*
+ * The body a feature moves with, or GRRL_FEATURE_.. Bit b of `changed`: body b has changed since
+ * this was last found for the feature. The others did not win then, and do not win now unless its
+ * own body has changed.
+ */
+uint8_t grrl_assign_best(const struct grrl_perception *p, const struct grrl_assign_origins *origins,
+                         uint16_t slot, uint32_t changed);
 
 /* Whether a feature of no body, or of another, moves with `body` as well; at least `least`
  * keyframes must have seen both. */
@@ -213,7 +232,9 @@ bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t
                          uint16_t least);
 
 /* Whether a feature of a body of n_own features fits some other body as well. */
-bool grrl_assign_fits_elsewhere(const struct grrl_perception *p, uint16_t slot, uint16_t n_own);
+bool grrl_assign_fits_elsewhere(const struct grrl_perception *p,
+                                const struct grrl_assign_origins *origins, uint16_t slot,
+                                uint16_t n_own);
 
 /* apart.c: the range of relative motion of two bodies from rest to rest, and its variances. */
 struct grrl_apart_range {
@@ -231,8 +252,8 @@ void grrl_apart_fit_both(const struct grrl_perception *p, uint8_t a, uint8_t b,
                          struct grrl_rigid_group *together);
 
 /* Evidence for relative motion of two bodies, in chi squared: what separate poses save in each
- * keyframe beyond the cost of their parameters. */
-float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b);
+ * keyframe beyond the cost of their parameters. A sum that has reached `enough` is not finished. */
+float grrl_apart_evidence(const struct grrl_perception *p, uint8_t a, uint8_t b, float enough);
 
 /* Whether two bodies may be one: their relative motion is in no keyframe significant, or is below
  * the joint detection threshold. */
@@ -270,7 +291,8 @@ struct grrl_joint_fit {
 /* The evidence for a joint between bodies a < b. */
 struct grrl_joint_evidence {
     float weight; /* gain over free motion in chi squared */
-    float order;  /* gain over independent motion in chi squared, less a cost for distance */
+    float order;  /* gain over independent motion in chi squared, less a cost for distance; if it is
+                     a joint */
     float odds;   /* gain over the other type in chi squared */
     float p[3];   /* probabilities: revolute, prismatic, free */
     uint8_t a;

@@ -11,6 +11,9 @@
  * wrong instead. */
 #define OFF_SHARE 3
 
+/* Beyond GRRL_COST_CAP by more than rounding. */
+#define OFF_COST (1.1f * GRRL_COST_CAP)
+
 /* A feature more in a keyframe counts as much as this many frames averaged, of all its features. */
 #define SEEN 1000u
 
@@ -29,42 +32,69 @@ float grrl_rigid_growth(const struct grrl_perception *p, float length, float ine
     return growth > LEAST_GROWTH ? growth : LEAST_GROWTH;
 }
 
+/* The points of a body that one keyframe saw, in arrays that compilers turn into vectors. */
+struct sightings {
+    uint16_t n;
+    float w[GRRL_MAX_FEATURES];
+    float local_x[GRRL_MAX_FEATURES];
+    float local_y[GRRL_MAX_FEATURES];
+    float world_x[GRRL_MAX_FEATURES];
+    float world_y[GRRL_MAX_FEATURES];
+    float weight;           /* sum of w */
+    struct grrl_vec2 local; /* weighted sums */
+    struct grrl_vec2 world;
+};
+
+static void gather(const struct grrl_perception_keyframe *key, const uint16_t *slots, uint16_t n,
+                   const struct grrl_vec2 *shape, struct sightings *seen)
+{
+    struct grrl_vec2 local = {0.0f, 0.0f};
+    struct grrl_vec2 world = {0.0f, 0.0f};
+    float weight = 0.0f;
+    uint16_t count = 0;
+    for (uint16_t i = 0; i < n; i++) {
+        float w = (float)key->weight[slots[i]];
+        if (w > 0.0f) {
+            struct grrl_vec2 q = shape[slots[i]];
+            struct grrl_vec2 x = key->point[slots[i]];
+            seen->w[count] = w;
+            seen->local_x[count] = q.x;
+            seen->local_y[count] = q.y;
+            seen->world_x[count] = x.x;
+            seen->world_y[count] = x.y;
+            count++;
+            weight += w;
+            local = grrl_vec2_add(local, grrl_vec2_scale(q, w));
+            world = grrl_vec2_add(world, grrl_vec2_scale(x, w));
+        }
+    }
+    seen->n = count;
+    seen->weight = weight;
+    seen->local = local;
+    seen->world = world;
+}
+
 /* Least-squares pose of weighted points (Umeyama 1991, in the plane: no trigonometry needed). */
 static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uint16_t *slots,
                            uint16_t n, const struct grrl_vec2 *shape, bool grows,
                            struct grrl_perception_pose *out)
 {
-    const struct grrl_perception_keyframe *key = &p->keyframe[k];
-    float weight = 0.0f;
-    struct grrl_vec2 world = {0.0f, 0.0f};
-    struct grrl_vec2 local = {0.0f, 0.0f};
-    unsigned seen = 0;
-    for (uint16_t i = 0; i < n; i++) {
-        float w = (float)key->weight[slots[i]];
-        if (w > 0.0f) {
-            seen++;
-            weight += w;
-            world = grrl_vec2_add(world, grrl_vec2_scale(key->point[slots[i]], w));
-            local = grrl_vec2_add(local, grrl_vec2_scale(shape[slots[i]], w));
-        }
-    }
+    struct sightings seen;
+    gather(&p->keyframe[k], slots, n, shape, &seen);
     out->weight = 0.0f;
-    if (seen < 2)
+    if (seen.n < 2)
         return;
-    world = grrl_vec2_scale(world, 1.0f / weight);
-    local = grrl_vec2_scale(local, 1.0f / weight);
+    const struct grrl_vec2 local = grrl_vec2_scale(seen.local, 1.0f / seen.weight);
+    const struct grrl_vec2 world = grrl_vec2_scale(seen.world, 1.0f / seen.weight);
     float along = 0.0f;
     float across = 0.0f;
     float inertia = 0.0f;
-    for (uint16_t i = 0; i < n; i++) {
-        float w = (float)key->weight[slots[i]];
-        if (w > 0.0f) {
-            struct grrl_vec2 q = grrl_vec2_sub(shape[slots[i]], local);
-            struct grrl_vec2 x = grrl_vec2_sub(key->point[slots[i]], world);
-            along += w * grrl_vec2_dot(q, x);
-            across += w * grrl_vec2_cross(q, x);
-            inertia += w * grrl_vec2_dot(q, q);
-        }
+    for (uint16_t i = 0; i < seen.n; i++) {
+        struct grrl_vec2 q = {seen.local_x[i] - local.x, seen.local_y[i] - local.y};
+        struct grrl_vec2 x = {seen.world_x[i] - world.x, seen.world_y[i] - world.y};
+        along += seen.w[i] * grrl_vec2_dot(q, x);
+        across += seen.w[i] * grrl_vec2_cross(q, x);
+        inertia += seen.w[i] * grrl_vec2_dot(q, q);
     }
     float length = grrl_sqrt(along * along + across * across);
     if (!(length > 0.0f))
@@ -74,7 +104,7 @@ static void fit_sized_pose(const struct grrl_perception *p, uint8_t k, const uin
     out->growth = grows ? grrl_rigid_growth(p, length, inertia) : 0.0f;
     out->pose.p =
         grrl_vec2_sub(world, grrl_rotate(out->pose, grrl_vec2_scale(local, 1.0f + out->growth)));
-    out->weight = weight;
+    out->weight = seen.weight;
     out->inertia = inertia;
 }
 
@@ -131,17 +161,25 @@ static void centre(const uint16_t *slots, uint16_t n, struct grrl_vec2 *shape)
         shape[slots[i]] = grrl_vec2_sub(shape[slots[i]], mean);
 }
 
+static bool sees(const struct grrl_perception *p, uint8_t k, uint16_t slot,
+                 const struct grrl_perception_pose *poses, size_t stride)
+{
+    return p->keyframe[k].weight[slot] > 0 && poses[k * stride].weight > 0.0f;
+}
+
 bool grrl_rigid_place(const struct grrl_perception *p, uint16_t slot,
                       const struct grrl_perception_pose *poses, size_t stride,
                       struct grrl_vec2 *local)
 {
+    const bool grows = p->config.sizes_change; /* otherwise it is quicker */
     struct grrl_vec2 sum = {0.0f, 0.0f};
     float weight = 0.0f;
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         float w = (float)p->keyframe[k].weight[slot];
         const struct grrl_perception_pose *pose = &poses[k * stride];
         if (w > 0.0f && pose->weight > 0.0f) {
-            struct grrl_vec2 q = grrl_to_local(pose, p->keyframe[k].point[slot]);
+            struct grrl_vec2 q = grows ? grrl_to_local(pose, p->keyframe[k].point[slot])
+                                       : grrl_untransform(pose->pose, p->keyframe[k].point[slot]);
             sum = grrl_vec2_add(sum, grrl_vec2_scale(q, w));
             weight += w;
         }
@@ -282,12 +320,21 @@ void grrl_rigid_refit(const struct grrl_perception *p, const uint16_t *slots, ui
     }
 }
 
+/* Variance of a residual per axis: of the point, the place and the turn of the body. */
+static inline float residual_variance(const struct grrl_perception *p, uint8_t weight,
+                                      const struct grrl_perception_pose *pose, float lever2)
+{
+    float noise2 = p->config.noise_m * p->config.noise_m;
+    return grrl_perception_variance(p, weight) + noise2 / pose->weight +
+           0.5f * noise2 * lever2 / (pose->inertia + GRRL_LEAST_INERTIA);
+}
+
 float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grrl_vec2 local,
                       const struct grrl_perception_pose *poses, size_t stride, float enough,
                       uint16_t *n)
 {
     float cost = 0.0f;
-    float noise2 = p->config.noise_m * p->config.noise_m;
+    float lever2 = grrl_vec2_dot(local, local);
     uint16_t count = 0;
     for (uint8_t k = 0; k < p->n_keyframes && cost <= enough; k++) {
         uint8_t w = p->keyframe[k].weight[slot];
@@ -295,16 +342,60 @@ float grrl_rigid_cost(const struct grrl_perception *p, uint16_t slot, struct grr
         if (w == 0 || !(pose->weight > 0.0f))
             continue;
         struct grrl_vec2 r = grrl_vec2_sub(p->keyframe[k].point[slot], grrl_to_world(pose, local));
-        float lever2 = grrl_vec2_dot(local, local);
-        float variance = grrl_perception_variance(p, w) + noise2 / pose->weight +
-                         0.5f * noise2 * lever2 / (pose->inertia + GRRL_LEAST_INERTIA);
-        float d2 = grrl_vec2_dot(r, r) / variance;
+        float d2 = grrl_vec2_dot(r, r) / residual_variance(p, w, pose, lever2);
         cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
         count++;
     }
     if (cost <= enough)
         *n = count;
     return cost;
+}
+
+/* The squared distance beyond which a keyframe costs the cap, for a lever of twice half_lever2. */
+static float capped2(const struct grrl_perception *p, uint16_t slot, uint8_t k,
+                     const struct grrl_perception_pose *poses, size_t stride, float half_lever2)
+{
+    return OFF_COST * residual_variance(p, p->keyframe[k].weight[slot], &poses[k * stride],
+                                        2.0f * half_lever2);
+}
+
+static struct grrl_vec2 local_in(const struct grrl_perception *p, uint16_t slot, uint8_t k,
+                                 const struct grrl_perception_pose *poses, size_t stride)
+{
+    return grrl_untransform(poses[k * stride].pose, p->keyframe[k].point[slot]);
+}
+
+/*
+ * Let two keyframes place a feature at q and r on a body, and let m be any place for both. One of q
+ * and r, say q, is off m by at least h, half their distance. The lever |m| is at most |q| + |q -
+ * m|, and chi squared grows with |q - m|, so it is at least that of h with a lever of |q| + h,
+ * which is bounded by (a + b)^2 <= 2 a^2 + 2 b^2. If that exceeds the cap for q and for r, one of
+ * the two keyframes costs the cap. The pairs are the first and the last keyframe, then those
+ * between them.
+ */
+bool grrl_rigid_is_off(const struct grrl_perception *p, uint16_t slot,
+                       const struct grrl_perception_pose *poses, size_t stride, float enough)
+{
+    uint8_t first = 0;
+    uint8_t end = p->n_keyframes;
+    float least = 0.0f;
+    for (; least <= enough && !p->config.sizes_change; least += GRRL_COST_CAP) {
+        while (first < end && !sees(p, first, slot, poses, stride))
+            first++;
+        while (first < end && !sees(p, (uint8_t)(end - 1), slot, poses, stride))
+            end--;
+        if (first + 1 >= end)
+            return false;
+        uint8_t last = --end;
+        struct grrl_vec2 q = local_in(p, slot, first, poses, stride);
+        struct grrl_vec2 r = local_in(p, slot, last, poses, stride);
+        float half2 = 0.25f * grrl_vec2_distance2(q, r);
+        if (half2 < capped2(p, slot, first, poses, stride, grrl_vec2_dot(q, q) + half2) ||
+            half2 < capped2(p, slot, last, poses, stride, grrl_vec2_dot(r, r) + half2))
+            return false;
+        first++;
+    }
+    return least > enough;
 }
 
 uint16_t grrl_rigid_slots(const struct grrl_perception *p, uint8_t body, uint16_t *slots)

@@ -136,8 +136,10 @@ static bool is_slide_of_bent_bodies(const struct grrl_perception *p,
                                     const struct grrl_joint_evidence *e)
 {
     bool is_short = e->fit.upper - e->fit.lower < SHORT_SLIDE * p->config.min_slide_m;
-    return e->type == GRRL_PRISMATIC && is_short &&
-           grrl_cut_hidden_joint(p, e->a) + grrl_cut_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
+    if (e->type != GRRL_PRISMATIC || !is_short)
+        return false;
+    float hidden = grrl_cut_hidden_joint(p, e->a);
+    return hidden > HIDDEN_SIGMAS || hidden + grrl_cut_hidden_joint(p, e->b) > HIDDEN_SIGMAS;
 }
 
 /* Moves the accepted evidence to the front, best first (Kruskal's maximum spanning forest, then

@@ -6,182 +6,189 @@
 
 #include "structure/match_private.h"
 
-/* A depth that no search reaches: there is no further mapping. */
-enum { FINISHED = GRRL_MAX_LINKS };
+/* How the candidates of a vertex are found, and what is checked beyond them. */
+enum check {
+    CHECK_COLOURS = GRRL_MATCH_ISOMORPHISM, /* planned: by colour; colours and labels are checked */
+    CHECK_NOTHING = GRRL_MATCH_MONOMORPHISM, /* planned: by label and joints */
+    CHECK_LABELS                             /* without plans: by traits; labels are checked */
+};
 
-static bool same_counts(const struct grrl_match_plan *a, const struct grrl_match_plan *b)
+/* An isomorphism needs no check for joints that only the target has: both have the same number of
+ * joints. */
+static inline bool is_feasible(const struct grrl_match *match, uint8_t vertex, uint8_t image,
+                               enum check check)
 {
-    return a->graph->n == b->graph->n && a->joints[GRRL_REVOLUTE] == b->joints[GRRL_REVOLUTE] &&
-           a->joints[GRRL_PRISMATIC] == b->joints[GRRL_PRISMATIC];
+    if (check == CHECK_NOTHING)
+        return true;
+    if (check == CHECK_LABELS)
+        return match->label[0][vertex] == match->label[1][image];
+    return match->plan[0]->colour[vertex] == match->plan[1]->colour[image] &&
+           match->plan[0]->label[vertex] == match->plan[1]->label[image];
 }
 
-enum grrl_match_kind grrl_match_kind_for(enum grrl_match_kind kind,
-                                         const struct grrl_match_plan *pattern,
-                                         const struct grrl_match_plan *target)
+/* Chooses the vertex of the next step: a neighbour of mapped vertices, those of the last one last,
+ * because its image is known last. */
+static inline uint8_t choose_vertex(const struct grrl_graph *pattern,
+                                    struct grrl_match_growth *growth)
 {
-    return same_counts(pattern, target) ? GRRL_MATCH_ISOMORPHISM : kind;
+    uint32_t choices = growth->frontier & ~growth->placed;
+    if (choices == 0)
+        choices = growth->recent & ~growth->placed;
+    if (choices == 0)
+        choices = grrl_bits_below(pattern->n) & ~growth->placed;
+    growth->frontier |= growth->recent;
+    growth->deepest++;
+    return grrl_first_bit(choices);
 }
 
-/*
- * The candidate targets at this depth: allowed, unused, and joined to the images of all mapped
- * neighbours by joints of the right types.
- */
-static inline uint32_t open_depth(const struct grrl_match *match,
-                                  const struct grrl_match_plan *order, size_t depth,
-                                  uint32_t unused)
+/* The candidate targets of a vertex: allowed, unused, and joined to the images of all mapped
+ * neighbours by joints of the right types. */
+static inline uint32_t open_vertex(const struct grrl_match *match, uint8_t vertex,
+                                   const uint8_t *image, struct grrl_match_growth *growth,
+                                   uint32_t unused)
 {
-    const struct grrl_match_step *step = &order->step[depth];
-    const struct grrl_graph *target = match->target->graph;
-    uint32_t candidates = match->allowed[step->vertex] & unused;
-    if (step->parent != GRRL_UNMAPPED)
-        candidates &= target->joined[step->type][match->image[step->parent]];
-    if (step->ties == 0)
-        return candidates;
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        uint32_t earlier = match->pattern->graph->joined[type][step->vertex];
-        for (earlier &= order->earlier[depth]; earlier != 0; earlier &= earlier - 1u)
-            candidates &= target->joined[type][match->image[grrl_first_bit(earlier)]];
+    const struct grrl_graph *pattern = match->pattern;
+    uint32_t candidates = match->own_allowed[vertex] & unused;
+    const uint32_t prismatic = pattern->joined[GRRL_PRISMATIC][vertex];
+    growth->recent = pattern->joined[GRRL_REVOLUTE][vertex] | prismatic;
+    for (uint32_t back = growth->recent & growth->placed; back != 0; back &= back - 1u) {
+        uint8_t earlier = grrl_first_bit(back);
+        candidates &= match->target->joined[prismatic >> earlier & 1u][image[earlier]];
     }
     return candidates;
 }
 
-/*
- * Checks one more pair, beyond what the candidates guarantee. The labels must be equal. For
- * isomorphism the colours must be equal too; for monomorphism no count of the target may be
- * smaller. An isomorphism needs no check for joints that only the target has: both have the same
- * number of joints.
- */
-static inline bool is_feasible(const struct grrl_match_plan *pattern, uint8_t vertex,
-                               const struct grrl_match_plan *target, uint8_t image, bool exact)
+/* The same for a planned step. */
+static inline uint32_t open_step(const struct grrl_match *match, const struct grrl_match_step *step,
+                                 const uint8_t *image, enum check check, uint32_t unused)
 {
-    uint32_t left = (target->growing[image] | GRRL_MATCH_GUARDS) - pattern->growing[vertex];
-    bool fits = exact ? pattern->colour[vertex] == target->colour[image]
-                      : (left & GRRL_MATCH_GUARDS) == GRRL_MATCH_GUARDS;
-    return fits && pattern->label[vertex] == target->label[image];
+    const struct grrl_graph *target = match->target;
+    uint32_t candidates = match->allowed[step->group[check]] & unused;
+    if (check == CHECK_NOTHING)
+        candidates &= match->plan[1]->at_least[step->degrees];
+    if (step->parent != GRRL_UNMAPPED)
+        candidates &= target->joined[step->type][image[step->parent]];
+    for (uint32_t ties = step->ties; ties != 0; ties &= ties - 1u) {
+        uint8_t earlier = grrl_first_bit(ties);
+        unsigned type = match->pattern->joined[GRRL_PRISMATIC][step->vertex] >> earlier & 1u;
+        candidates &= target->joined[type][image[earlier]];
+    }
+    return candidates;
 }
 
 /* Continues the search to the next mapping. Local copies keep the loop's state in registers. */
-static inline enum grrl_status search(struct grrl_match *match, bool exact)
+static inline enum grrl_status search(struct grrl_match *match, enum check check)
 {
-    const struct grrl_match_plan *pattern = match->pattern;
-    const struct grrl_match_plan *target = match->target;
-    const struct grrl_match_plan *order = match->order;
-    const size_t last = pattern->graph->n - 1u;
+    const struct grrl_match_step *steps = match->step;
+    const size_t last = match->pattern->n - 1u;
+    uint8_t *restrict image_of = match->image;
+    struct grrl_match_growth growth = {0};
+    if (check == CHECK_LABELS)
+        growth = match->growth;
     size_t depth = match->depth;
     uint32_t unused = match->unused;
     int64_t left = match->budget;
     uint32_t candidates = match->candidates[depth];
-    uint8_t vertex = order->step[depth].vertex;
-    enum grrl_status status;
+    uint8_t vertex = steps[depth].vertex;
+    enum grrl_status status = GRRL_OK;
     for (;;) {
         if (candidates == 0) {
             if (depth == 0) {
-                depth = FINISHED;
+                depth = GRRL_MATCH_FINISHED;
                 status = GRRL_ERR_NONE;
                 break;
             }
             depth--;
-            vertex = order->step[depth].vertex;
-            unused |= grrl_bit(match->image[vertex]);
+            vertex = steps[depth].vertex;
+            unused |= grrl_bit(image_of[vertex]);
+            growth.placed &= ~grrl_bit(vertex);
             candidates = match->candidates[depth];
             continue;
         }
         if (--left < 0) {
-            left = 0;
             match->candidates[depth] = candidates;
             status = GRRL_ERR_UNDECIDED;
             break;
         }
         uint8_t image = grrl_first_bit(candidates);
-        uint32_t taken = candidates & (0u - candidates);
-        candidates ^= taken;
-        if (!is_feasible(pattern, vertex, target, image, exact))
+        candidates &= candidates - 1u;
+        if (!is_feasible(match, vertex, image, check))
             continue;
-        match->image[vertex] = image;
+        image_of[vertex] = image;
         match->candidates[depth] = candidates;
-        if (depth == last) { /* the next call continues with the other candidates here */
-            status = GRRL_OK;
-            break;
-        }
-        unused ^= taken;
+        if (depth == last)
+            break; /* the next call continues with the other candidates here */
+        unused &= ~grrl_bit(image);
         depth++;
-        vertex = order->step[depth].vertex;
-        candidates = open_depth(match, order, depth, unused);
+        if (check == CHECK_LABELS) {
+            growth.placed |= grrl_bit(vertex);
+            if (depth > growth.deepest)
+                match->own_step[depth].vertex = choose_vertex(match->pattern, &growth);
+            vertex = match->own_step[depth].vertex;
+            candidates = open_vertex(match, vertex, image_of, &growth, unused);
+        } else {
+            vertex = steps[depth].vertex;
+            candidates = open_step(match, &steps[depth], image_of, check, unused);
+        }
     }
+    if (check == CHECK_LABELS)
+        match->growth = growth;
     match->depth = (uint8_t)depth;
     match->unused = unused;
-    match->budget = (uint32_t)left;
+    match->budget = left < 0 ? 0 : (uint32_t)left;
     return status;
 }
 
-static void start(struct grrl_match *match)
+void grrl_match_start(struct grrl_match *match, uint32_t candidates)
 {
     match->depth = 0;
     match->unused = UINT32_MAX;
-    if (match->pattern->graph->n > 0)
-        match->candidates[0] = open_depth(match, match->order, 0, UINT32_MAX);
+    match->candidates[0] = candidates;
     memset(match->image, GRRL_UNMAPPED,
            sizeof match->image); /* entries beyond the pattern stay unmapped */
 }
 
-void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
-                      const struct grrl_graph *pattern, const struct grrl_graph *target,
-                      grrl_label mask, uint32_t budget)
+void grrl_match_start_at(struct grrl_match *match, uint8_t vertex)
 {
-    struct grrl_match_plan *own = match->own;
-    match->pattern = &own[0];
-    match->target = &own[1];
-    match->order = &own[0];
-    match->budget = budget;
-    match->depth = FINISHED;
-    own[0].graph = pattern;
-    own[1].graph = target;
-    if (pattern->n > target->n || (kind == GRRL_MATCH_ISOMORPHISM && pattern->n < target->n))
-        return;
-    grrl_match_plan_partly(&own[0], pattern, mask);
-    grrl_match_plan_partly(&own[1], target, mask);
-    match->kind = grrl_match_kind_for(kind, &own[0], &own[1]);
-    if (match->kind == GRRL_MATCH_ISOMORPHISM) {
-        if (!same_counts(&own[0], &own[1]))
-            return;
-        grrl_match_colour(&own[0]);
-        grrl_match_colour(&own[1]);
-        if (own[0].hash != own[1].hash)
-            return;
-    } else if (own[0].joints[GRRL_REVOLUTE] > own[1].joints[GRRL_REVOLUTE] ||
-               own[0].joints[GRRL_PRISMATIC] > own[1].joints[GRRL_PRISMATIC]) {
-        return;
-    }
-    if (pattern->n > 0)
-        grrl_match_order_partly(&own[0], match->kind, &own[1]);
-    for (uint8_t v = 0; v < pattern->n; v++)
-        match->allowed[v] = grrl_bits_below(target->n);
-    start(match);
+    match->own_step[0] = (struct grrl_match_step){.vertex = vertex, .parent = GRRL_UNMAPPED};
+    match->step = match->own_step;
+    match->growth =
+        (struct grrl_match_growth){.recent = grrl_match_neighbours(match->pattern, vertex)};
+    grrl_match_start(match, match->own_allowed[vertex]);
 }
 
 void grrl_match_start_planned(struct grrl_match *match, enum grrl_match_kind kind,
                               const struct grrl_match_plan *pattern,
                               const struct grrl_match_plan *target, uint32_t budget)
 {
-    const uint8_t n = pattern->graph->n;
-    match->pattern = pattern;
-    match->target = target;
-    match->order = pattern;
+    match->pattern = pattern->graph;
+    match->target = target->graph;
+    match->plan[0] = pattern;
+    match->plan[1] = target;
+    match->step = pattern->step;
     match->kind = kind;
     match->budget = budget;
-    if (kind == GRRL_MATCH_ISOMORPHISM) {
-        for (uint8_t v = 0; v < n; v++)
-            match->allowed[v] = target->cell[pattern->rank[v]];
-    } else if (n > 0) {
-        for (uint8_t v = 0; v < GRRL_MAX_LINKS; v++)
-            match->allowed[v] = grrl_bits_below(target->graph->n);
-        /* no image restricts the first vertex, so its joints do */
-        const uint8_t first = pattern->step[0].vertex;
-        for (int type = 0; type < GRRL_JOINT_TYPES; type++)
-            match->allowed[first] &=
-                target->at_least[type][grrl_match_degree(pattern, first, type)];
+    const uint8_t first = pattern->step[0].vertex;
+    if (pattern->graph->n == 0) {
+        grrl_match_start(match, 0);
+    } else if (kind == GRRL_MATCH_ISOMORPHISM) {
+        match->allowed = target->cell;
+        grrl_match_start(match, target->cell[pattern->rank[first]]);
+    } else {
+        match->allowed = match->own_allowed;
+        unsigned at = 0;
+        for (unsigned k = 0; k < pattern->n_labels; k++) {
+            const grrl_label label = pattern->label[pattern->label_example[k]];
+            while (at < target->n_labels && target->label[target->label_example[at]] < label)
+                at++;
+            bool both = at < target->n_labels && target->label[target->label_example[at]] == label;
+            match->own_allowed[k] = both ? target->labelled[at] : 0;
+        }
+        const struct grrl_match_step *step = &pattern->step[0];
+        uint32_t candidates =
+            match->own_allowed[step->group[kind]] & target->at_least[step->degrees];
+        grrl_match_start(match, candidates);
     }
-    start(match);
 }
 
 void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,
@@ -189,35 +196,53 @@ void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kin
                               const struct grrl_match_plan *target, uint32_t budget)
 {
     kind = grrl_match_kind_for(kind, pattern, target);
-    match->pattern = pattern;
-    match->target = target;
-    match->depth = FINISHED;
+    match->pattern = pattern->graph;
+    match->target = target->graph;
+    match->depth = GRRL_MATCH_FINISHED;
     if (grrl_match_planned_may_fit(kind, pattern, target))
         grrl_match_start_planned(match, kind, pattern, target, budget);
 }
 
 void grrl_match_fix(struct grrl_match *match, uint8_t pattern_vertex, uint8_t target_vertex)
 {
-    assert(pattern_vertex < match->pattern->graph->n && target_vertex < match->target->graph->n);
-    if (match->depth == FINISHED)
+    assert(pattern_vertex < match->pattern->n && target_vertex < match->target->n);
+    if (match->depth == GRRL_MATCH_FINISHED)
         return;
-    match->allowed[pattern_vertex] &= grrl_bit(target_vertex);
-    match->own[0].graph = match->pattern->graph;
-    grrl_match_order_from(&match->own[0], pattern_vertex);
-    match->order = &match->own[0];
-    start(match);
+    if (match->plan[0] == NULL) {
+        match->own_allowed[pattern_vertex] &= grrl_bit(target_vertex);
+        grrl_match_start_at(match, pattern_vertex);
+        return;
+    }
+    uint32_t allowed[GRRL_MAX_LINKS]; /* per vertex instead of per group */
+    const uint8_t n = match->pattern->n;
+    for (uint8_t depth = 0; depth < n; depth++) {
+        const struct grrl_match_step *step = &match->step[depth];
+        allowed[step->vertex] = match->allowed[step->group[match->kind]];
+    }
+    allowed[pattern_vertex] &= grrl_bit(target_vertex);
+    memcpy(match->own_allowed, allowed, n * sizeof allowed[0]);
+    grrl_match_order_from(match->own_step, match->pattern, pattern_vertex);
+    match->allowed = match->own_allowed;
+    match->step = match->own_step;
+    grrl_match_start(match, allowed[pattern_vertex]);
+}
+
+static enum grrl_status search_on(struct grrl_match *match)
+{
+    if (match->plan[0] == NULL)
+        return search(match, CHECK_LABELS);
+    return match->kind == GRRL_MATCH_ISOMORPHISM ? search(match, CHECK_COLOURS)
+                                                 : search(match, CHECK_NOTHING);
 }
 
 enum grrl_status grrl_match_next(struct grrl_match *match, uint8_t *map)
 {
-    uint8_t n = match->pattern->graph->n;
-    if (match->depth == FINISHED)
+    if (match->depth == GRRL_MATCH_FINISHED)
         return GRRL_ERR_NONE;
-    if (n == 0) {
-        match->depth = FINISHED; /* the empty mapping is reported once */
+    if (match->pattern->n == 0) {
+        match->depth = GRRL_MATCH_FINISHED; /* the empty mapping is reported once */
     } else {
-        enum grrl_status status =
-            match->kind == GRRL_MATCH_ISOMORPHISM ? search(match, true) : search(match, false);
+        enum grrl_status status = search_on(match);
         if (status != GRRL_OK)
             return status;
     }

@@ -60,7 +60,9 @@ enum grrl_status grrl_match_find(enum grrl_match_kind kind, const struct grrl_gr
                                  uint8_t *map)
 {
     uint32_t first = budget < QUICK_STEPS ? budget : QUICK_STEPS;
-    enum grrl_status status = grrl_match_quick(kind, pattern, target, mask, first, map);
+    struct grrl_match match;
+    grrl_match_begin(&match, kind, pattern, target, mask, first);
+    enum grrl_status status = grrl_match_next(&match, map);
     if (status != GRRL_ERR_UNDECIDED)
         return status;
     struct grrl_match_plan plan[2];

@@ -24,8 +24,9 @@ static inline uint32_t hash_label(grrl_label label)
     return (uint32_t)label * SPREAD_LOW + (uint32_t)(label >> 32) * SPREAD_HIGH;
 }
 
-void grrl_match_plan_partly(struct grrl_match_plan *plan, const struct grrl_graph *graph,
-                            grrl_label mask)
+/* Sets labels, joints, and degrees as the first two growing counts. */
+static void count_joints(struct grrl_match_plan *plan, const struct grrl_graph *graph,
+                         grrl_label mask)
 {
     uint32_t ends[GRRL_JOINT_TYPES] = {0};
     plan->graph = graph;
@@ -42,28 +43,23 @@ void grrl_match_plan_partly(struct grrl_match_plan *plan, const struct grrl_grap
         plan->joints[type] = (uint8_t)(ends[type] / 2);
 }
 
-/* Sets each vertex's colour from its label and degrees; the plan's hash is their sum. */
-void grrl_match_colour(struct grrl_match_plan *plan)
+/* Sets each vertex's colour from its label and degrees. */
+static void colour(struct grrl_match_plan *plan)
 {
-    uint32_t sum = 0;
-    for (unsigned i = 0; i < plan->graph->n; i++) {
+    for (unsigned i = 0; i < plan->graph->n; i++)
         plan->colour[i] = spread(hash_label(plan->label[i]) + plan->growing[i] * SPREAD_REVOLUTE);
-        sum += plan->colour[i];
-    }
-    plan->hash = sum;
 }
 
-void grrl_match_order_from(struct grrl_match_plan *plan, uint8_t first)
+void grrl_match_order_from(struct grrl_match_step *step, const struct grrl_graph *graph,
+                           uint8_t first)
 {
-    const struct grrl_graph *graph = plan->graph;
-    struct grrl_match_step *step = plan->step;
     uint32_t placed = 0;
     unsigned tail = 0;
     unsigned head = 0;
     while (tail < graph->n) {
         uint8_t start = tail == 0 ? first : grrl_first_bit(grrl_bits_below(graph->n) & ~placed);
-        plan->earlier[tail] = placed;
-        step[tail++] = (struct grrl_match_step){.vertex = start, .parent = GRRL_UNMAPPED};
+        step[tail++] = (struct grrl_match_step){
+            .vertex = start, .parent = GRRL_UNMAPPED, .group = {start, start}};
         placed |= grrl_bit(start);
         for (; head < tail; head++) {
             uint8_t parent = step[head].vertex;
@@ -72,44 +68,17 @@ void grrl_match_order_from(struct grrl_match_plan *plan, uint8_t first)
                 for (; fresh != 0; fresh &= fresh - 1u) {
                     uint8_t vertex = grrl_first_bit(fresh);
                     uint32_t back = grrl_match_neighbours(graph, vertex) & placed;
-                    plan->earlier[tail] = placed;
                     step[tail++] = (struct grrl_match_step){.vertex = vertex,
                                                             .parent = parent,
                                                             .type = type,
-                                                            .ties = (back & (back - 1u)) != 0};
+                                                            .group = {vertex, vertex},
+                                                            .ties = back & ~grrl_bit(parent)};
                     placed |= grrl_bit(vertex);
                 }
             }
         }
     }
 }
-
-/* Selects one of eight byte counters in a word; returns the shift to its byte. */
-static inline unsigned bucket_of(const struct grrl_match_plan *plan, enum grrl_match_kind kind,
-                                 unsigned vertex)
-{
-    uint32_t key = kind == GRRL_MATCH_ISOMORPHISM ? plan->colour[vertex]
-                                                  : spread(hash_label(plan->label[vertex]));
-    return key >> 29 << 3;
-}
-
-void grrl_match_order_partly(struct grrl_match_plan *pattern, enum grrl_match_kind kind,
-                             const struct grrl_match_plan *target)
-{
-    uint64_t counts = 0;
-    for (unsigned i = 0; i < target->graph->n; i++)
-        counts += UINT64_C(1) << bucket_of(target, kind, i);
-    uint32_t rarest = UINT32_MAX;
-    for (unsigned i = 0; i < pattern->graph->n; i++) {
-        uint32_t count = (uint32_t)(counts >> bucket_of(pattern, kind, i)) & 0xffu;
-        uint32_t degree = (pattern->growing[i] & 0xffu) + (pattern->growing[i] >> 8);
-        uint32_t score = count << 16 | (32u - degree) << 8 | i;
-        rarest = score < rarest ? score : rarest;
-    }
-    grrl_match_order_from(pattern, (uint8_t)(rarest & 0xffu));
-}
-
-/* --- plans ------------------------------------------------------------------------------------ */
 
 /* Mixes the colours of the neighbours into each colour, by the types of the joints to them. */
 static void refine_colours(struct grrl_match_plan *plan)
@@ -150,10 +119,37 @@ static void count_surroundings(struct grrl_match_plan *plan)
 static void count_degrees(struct grrl_match_plan *plan)
 {
     memset(plan->at_least, 0, sizeof plan->at_least);
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++)
-        for (uint8_t i = 0; i < plan->graph->n; i++)
-            for (unsigned k = 0; k <= grrl_match_degree(plan, i, type); k++)
-                plan->at_least[type][k] |= grrl_bit(i);
+    for (uint8_t i = 0; i < plan->graph->n; i++) {
+        const unsigned degrees = grrl_match_degrees(plan, i);
+        for (unsigned revolute = 0; revolute <= degrees / 4; revolute++)
+            for (unsigned prismatic = 0; prismatic <= degrees % 4; prismatic++)
+                plan->at_least[revolute * 4 + prismatic] |= grrl_bit(i);
+    }
+}
+
+/* Ranks the different labels by value. */
+static void rank_labels(struct grrl_match_plan *plan)
+{
+    unsigned n_labels = 0;
+    memset(plan->labelled, 0, sizeof plan->labelled);
+    for (uint8_t i = 0; i < plan->graph->n; i++) {
+        unsigned at = 0;
+        while (at < n_labels && plan->label[plan->label_example[at]] < plan->label[i])
+            at++;
+        if (at == n_labels || plan->label[plan->label_example[at]] != plan->label[i]) {
+            for (unsigned k = n_labels++; k > at; k--) {
+                plan->label_example[k] = plan->label_example[k - 1];
+                plan->labelled[k] = plan->labelled[k - 1];
+            }
+            plan->label_example[at] = i;
+            plan->labelled[at] = 0;
+        }
+        plan->labelled[at] |= grrl_bit(i);
+    }
+    plan->n_labels = (uint8_t)n_labels;
+    for (unsigned k = 0; k < n_labels; k++)
+        for (uint32_t rest = plan->labelled[k]; rest != 0; rest &= rest - 1u)
+            plan->label_group[grrl_first_bit(rest)] = (uint8_t)k;
 }
 
 /* Ranks the colours by value; each cell is the set of vertices of one colour. */
@@ -212,8 +208,9 @@ static void order_planned(struct grrl_match_plan *plan)
             .vertex = best,
             .parent = from,
             .type = !starts && (graph->joined[GRRL_PRISMATIC][best] & grrl_bit(from)) != 0,
-            .ties = (tied & grrl_bit(best)) != 0};
-        plan->earlier[depth] = placed;
+            .degrees = grrl_match_degrees(plan, best),
+            .group = {plan->rank[best], plan->label_group[best]},
+            .ties = starts ? 0 : grrl_match_neighbours(graph, best) & placed & ~grrl_bit(from)};
         placed |= grrl_bit(best);
         uint32_t neighbours = grrl_match_neighbours(graph, best) & ~placed;
         for (uint32_t rest = neighbours & ~frontier; rest != 0; rest &= rest - 1u)
@@ -226,23 +223,14 @@ static void order_planned(struct grrl_match_plan *plan)
 void grrl_match_plan_of(struct grrl_match_plan *plan, const struct grrl_graph *graph,
                         grrl_label mask)
 {
-    grrl_match_plan_partly(plan, graph, mask);
-    grrl_match_colour(plan);
+    count_joints(plan, graph, mask);
+    colour(plan);
     for (int round = 0; round < ROUNDS; round++)
         refine_colours(plan);
     count_surroundings(plan);
     count_degrees(plan);
     rank_colours(plan);
+    rank_labels(plan);
     order_planned(plan);
     grrl_signature_of(graph, mask, &plan->monotone);
-}
-
-bool grrl_match_planned_may_fit(enum grrl_match_kind kind, const struct grrl_match_plan *pattern,
-                                const struct grrl_match_plan *target)
-{
-    if (kind == GRRL_MATCH_ISOMORPHISM)
-        return pattern->hash == target->hash && pattern->graph->n == target->graph->n &&
-               memcmp(pattern->joints, target->joints, sizeof target->joints) == 0;
-    return pattern->graph->n <= target->graph->n &&
-           grrl_signature_within(&pattern->monotone, &target->monotone, false);
 }

@@ -21,7 +21,7 @@ struct pairing {
 struct tree_search {
     const struct grrl_match_plan *pattern;
     const struct grrl_match_plan *target;
-    struct grrl_match_plan rooted; /* the steps from the root outwards */
+    struct grrl_match_step step[GRRL_MAX_LINKS]; /* from the root outwards */
     uint8_t parent[GRRL_MAX_LINKS];
     uint32_t spare[GRRL_MAX_LINKS][GRRL_MAX_LINKS];
 };
@@ -142,9 +142,9 @@ static uint32_t spare_neighbours(const struct tree_search *search, uint8_t p, ui
 static void write_map(const struct tree_search *search, uint8_t root_image, uint8_t *map)
 {
     memset(map, GRRL_UNMAPPED, GRRL_MAX_LINKS);
-    map[search->rooted.step[0].vertex] = root_image;
+    map[search->step[0].vertex] = root_image;
     for (uint8_t i = 0; i < search->pattern->graph->n; i++) {
-        uint8_t p = search->rooted.step[i].vertex;
+        uint8_t p = search->step[i].vertex;
         uint8_t parent = search->parent[p];
         struct pairing pairing;
         bool paired = list_children(search, p, map[p], &pairing) &&
@@ -164,12 +164,11 @@ enum grrl_status grrl_match_tree(const struct grrl_match_plan *pattern,
     struct tree_search search;
     search.pattern = pattern;
     search.target = target;
-    search.rooted.graph = pattern->graph;
-    grrl_match_order_from(&search.rooted, pattern_vertex);
+    grrl_match_order_from(search.step, pattern->graph, pattern_vertex);
     *images = 0;
     for (uint8_t i = n; i-- > 0;) {
-        uint8_t p = search.rooted.step[i].vertex;
-        search.parent[p] = search.rooted.step[i].parent;
+        uint8_t p = search.step[i].vertex;
+        search.parent[p] = search.step[i].parent;
         for (uint8_t t = 0; t < target->graph->n; t++) {
             search.spare[p][t] = spare_neighbours(&search, p, t);
             if (i == 0 && search.spare[p][t] != 0)

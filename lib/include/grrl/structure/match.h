@@ -16,6 +16,8 @@
 #ifndef GRRL_MATCH_H
 #define GRRL_MATCH_H
 
+#include <stddef.h>
+
 #include "grrl/base/api.h"
 #include "grrl/structure/graph.h"
 #include "grrl/structure/signature.h"
@@ -35,16 +37,18 @@ enum { GRRL_UNMAPPED = 0xff };
 #define GRRL_MATCH_BUDGET 20000
 #endif
 
-/* Degrees told apart where a search starts: 0, 1, 2, and 3 or more joints of a type. */
-enum { GRRL_MATCH_DEGREES = 4 };
+/* Numbers of joints told apart: 0, 1, 2, and 3 or more of each type. */
+enum { GRRL_MATCH_DEGREES = 4 * 4 };
 
 /* One pattern vertex, in search order. */
 struct grrl_match_step {
     /* private */
     uint8_t vertex;
-    uint8_t parent; /* an earlier neighbour; GRRL_UNMAPPED at the start of a component */
-    uint8_t type;   /* of the joint to it */
-    uint8_t ties;   /* further earlier neighbours: the vertex closes loops */
+    uint8_t parent;   /* an earlier neighbour; GRRL_UNMAPPED at the start of a component */
+    uint8_t type;     /* of the joint to it */
+    uint8_t degrees;  /* joints of both types, see match_private.h */
+    uint8_t group[2]; /* per kind: of the vertices with the same targets, see grrl_match.allowed */
+    uint32_t ties;    /* further earlier neighbours: the vertex closes loops */
 };
 
 /* What matching precomputes for a graph under a mask; serves as pattern or target. */
@@ -52,32 +56,63 @@ struct grrl_match_plan {
     /* private */
     const struct grrl_graph *graph;
     uint8_t joints[GRRL_JOINT_TYPES];
-    uint8_t rank[GRRL_MAX_LINKS]; /* rank of a vertex's colour among all colours */
-    uint32_t hash;                /* of the colours: equal for isomorphic graphs */
+    uint8_t n_labels;                      /* different labels */
+    uint8_t rank[GRRL_MAX_LINKS];          /* rank of a vertex's colour among all colours */
+    uint8_t label_group[GRRL_MAX_LINKS];   /* rank of a vertex's label among all labels */
+    uint8_t label_example[GRRL_MAX_LINKS]; /* per label, by rank: a vertex with it */
+    uint32_t hash;                         /* of the colours: equal for isomorphic graphs */
     struct grrl_signature monotone;
-    grrl_label label[GRRL_MAX_LINKS]; /* under the mask */
-    uint32_t colour[GRRL_MAX_LINKS];  /* per vertex: hash of its label and surroundings */
+    grrl_label label[GRRL_MAX_LINKS];  /* under the mask */
+    uint32_t labelled[GRRL_MAX_LINKS]; /* per label, by rank: the vertices with it */
+    uint32_t colour[GRRL_MAX_LINKS];   /* per vertex: hash of its label and surroundings */
     uint32_t growing[GRRL_MAX_LINKS]; /* per vertex: four counts, never smaller in a larger graph */
     uint32_t cell[GRRL_MAX_LINKS];    /* per rank: the vertices of that colour */
-    /* per type and degree: the vertices with at least so many joints */
-    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MATCH_DEGREES];
-    uint32_t earlier[GRRL_MAX_LINKS]; /* per step: the vertices of earlier steps */
+    uint32_t
+        at_least[GRRL_MATCH_DEGREES]; /* the vertices with at least so many joints of each type */
     struct grrl_match_step step[GRRL_MAX_LINKS];
+};
+
+/* Traits of a vertex, see match_begin.c. */
+enum { GRRL_MATCH_TRAITS = 2 * GRRL_JOINT_TYPES };
+
+/* What a search without plans needs of one graph under a mask. */
+struct grrl_match_side {
+    /* private */
+    const struct grrl_graph *graph;
+    const grrl_label *label;           /* under the mask */
+    uint32_t alike;                    /* vertices with the reference label */
+    uint32_t trait[GRRL_MATCH_TRAITS]; /* vertices with each trait */
+    grrl_label masked[GRRL_MAX_LINKS];
+};
+
+/* What a search that chooses its steps on the way knows of them. */
+struct grrl_match_growth {
+    /* private */
+    size_t deepest;    /* depth of the last one chosen */
+    uint32_t recent;   /* neighbours of its vertex */
+    uint32_t frontier; /* neighbours of all others */
+    uint32_t placed;   /* mapped vertices */
 };
 
 struct grrl_match {
     /* private */
-    const struct grrl_match_plan *pattern;
-    const struct grrl_match_plan *target;
-    const struct grrl_match_plan *order; /* the plan whose step order is used */
+    const struct grrl_graph *pattern;
+    const struct grrl_graph *target;
+    const struct grrl_match_plan *plan[2]; /* of both, or NULL */
+    const grrl_label *label[2];            /* of both, without plans */
+    const uint32_t *allowed;               /* per group of pattern vertices: permitted targets */
+    const struct grrl_match_step *step;    /* per depth */
     enum grrl_match_kind kind;
-    uint32_t budget;                     /* search steps left */
-    uint8_t depth;                       /* vertices mapped; GRRL_MAX_LINKS: no further mapping */
-    uint32_t unused;                     /* targets not in use */
-    uint32_t allowed[GRRL_MAX_LINKS];    /* per pattern vertex: permitted targets */
+    uint32_t budget; /* search steps left */
+    uint8_t depth;   /* vertices mapped; GRRL_MAX_LINKS: no further mapping */
+    uint32_t unused; /* targets not in use */
+    struct grrl_match_growth growth;
     uint32_t candidates[GRRL_MAX_LINKS]; /* per depth: targets not yet tried */
     uint8_t image[GRRL_MAX_LINKS];       /* per pattern vertex */
-    struct grrl_match_plan own[2];       /* plans of graphs given without one */
+    /* made for this search */
+    uint32_t own_allowed[GRRL_MAX_LINKS];
+    struct grrl_match_step own_step[GRRL_MAX_LINKS];
+    struct grrl_match_side own_side[2];
 };
 
 /*
@@ -116,6 +151,17 @@ GRRL_MUST_USE enum grrl_status grrl_match_find_planned(enum grrl_match_kind kind
 void grrl_match_begin(struct grrl_match *match, enum grrl_match_kind kind,
                       const struct grrl_graph *pattern, const struct grrl_graph *target,
                       grrl_label mask, uint32_t budget);
+
+/*
+ * The same for a graph that is matched with many others: grrl_match_side_of prepares its side once.
+ * Both sides must be made under the same mask and reference, any label under that mask; one that
+ * some vertices have and others have not rules out most. False: there is no mapping.
+ */
+void grrl_match_side_of(struct grrl_match_side *side, const struct grrl_graph *graph,
+                        grrl_label mask, grrl_label reference);
+bool grrl_match_begin_sides(struct grrl_match *match, enum grrl_match_kind kind,
+                            const struct grrl_match_side *pattern,
+                            const struct grrl_match_side *target, uint32_t budget);
 
 /* Like grrl_match_begin, with plans made under the same mask, which must outlive the search. */
 void grrl_match_begin_planned(struct grrl_match *match, enum grrl_match_kind kind,

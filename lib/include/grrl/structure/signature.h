@@ -59,18 +59,24 @@ struct grrl_paths {
  * saturate. */
 void grrl_paths_of(const struct grrl_graph *graph, struct grrl_paths *paths);
 
+/* The counts of `part` and `whole` alone, which rule out most. */
+static inline bool grrl_paths_counts_within(const struct grrl_paths *part,
+                                            const struct grrl_paths *whole)
+{
+    const uint64_t full = UINT64_C(0x8888888888888888);
+    uint64_t of_part = part->word[0] | (uint64_t)part->word[1] << 32;
+    uint64_t of_whole = whole->word[0] | (uint64_t)whole->word[1] << 32;
+    return (((of_whole | full) - of_part) & full) == full;
+}
+
 /* Whether a graph with paths `part` could be a sub-structure of one with `whole`.
  * False is certain. */
 static inline bool grrl_paths_within(const struct grrl_paths *part, const struct grrl_paths *whole)
 {
-    const uint32_t full = UINT32_C(0x88888888);
-    uint32_t fits = full;
     uint32_t lacking = 0;
-    for (int i = 0; i < GRRL_PATH_COUNTS; i++)
-        fits &= (whole->word[i] | full) - part->word[i];
     for (int i = GRRL_PATH_COUNTS; i < GRRL_PATH_WORDS; i++)
         lacking |= part->word[i] & ~whole->word[i];
-    return (((fits & full) ^ full) | lacking) == 0;
+    return grrl_paths_counts_within(part, whole) & (lacking == 0);
 }
 
 GRRL_API_END

@@ -19,10 +19,18 @@ static uint32_t cell_of(uint64_t counts)
     return (uint32_t)((uint64_t)spread * GRRL_EXPERIENCE_CELLS >> 32);
 }
 
+/* Joints beyond one per link: in a connected structure one less than its loops. */
+static int spare_joints(unsigned links, unsigned revolute, unsigned prismatic)
+{
+    return (int)(revolute + prismatic) - (int)links;
+}
+
 void grrl_experience_index_clear(struct grrl_experience_index *index)
 {
     memset(index->start, 0, sizeof index->start);
     memset(index->most, 0, sizeof index->most);
+    index->fewest_spare = INT8_MAX;
+    index->most_spare = INT8_MIN;
 }
 
 /* Each later cell makes room by moving its first row to its end. */
@@ -44,6 +52,9 @@ void grrl_experience_index_add(struct grrl_experience_index *index,
         uint8_t size = (uint8_t)(counts >> 8 * i);
         index->most[i] = size > index->most[i] ? size : index->most[i];
     }
+    const int spare = spare_joints(state->n, state->joints[0], state->joints[1]);
+    index->fewest_spare = (int8_t)(spare < index->fewest_spare ? spare : index->fewest_spare);
+    index->most_spare = (int8_t)(spare > index->most_spare ? spare : index->most_spare);
 }
 
 void grrl_experience_index_remove(struct grrl_experience_index *index,
@@ -64,9 +75,9 @@ void grrl_experience_index_remove(struct grrl_experience_index *index,
 }
 
 /* Searches the states of one size, all larger than the current one or all smaller. */
-static void search_cell(const struct grrl_experience_index *index, uint64_t size, bool larger,
-                        const struct grrl_experience_state *current, unsigned distance,
-                        struct grrl_closest *closest)
+static inline void search_cell(const struct grrl_experience_index *index, uint64_t size,
+                               bool larger, const struct grrl_experience_state *current,
+                               unsigned distance, struct grrl_closest *closest)
 {
     const uint64_t own = current->signature.word[0];
     const struct grrl_paths paths = current->paths;
@@ -81,6 +92,16 @@ static void search_cell(const struct grrl_experience_index *index, uint64_t size
     }
 }
 
+/* Whether a state of this size may be there. A cell holds states of other sizes, too, so a size
+ * that none has would cost a search. */
+static bool may_hold(const struct grrl_experience_index *index, unsigned links, unsigned revolute,
+                     unsigned prismatic)
+{
+    const int spare = spare_joints(links, revolute, prismatic);
+    return links <= index->most[0] && revolute <= index->most[1] && prismatic <= index->most[2] &&
+           spare >= index->fewest_spare && spare <= index->most_spare;
+}
+
 void grrl_experience_index_find(const struct grrl_experience_index *index,
                                 const struct grrl_experience_state *current, unsigned distance,
                                 struct grrl_closest *closest)
@@ -91,15 +112,13 @@ void grrl_experience_index_find(const struct grrl_experience_index *index,
     for (unsigned links = 0; links <= distance; links++) {
         for (unsigned revolute = 0; links + revolute <= distance; revolute++) {
             unsigned prismatic = distance - links - revolute;
-            if (links <= n && revolute <= r && prismatic <= p) {
+            if (links <= n && revolute <= r && prismatic <= p &&
+                may_hold(index, n - links, r - revolute, p - prismatic))
                 search_cell(index, size_of(n - links, r - revolute, p - prismatic), false, current,
                             distance, closest);
-            }
-            if (n + links <= index->most[0] && r + revolute <= index->most[1] &&
-                p + prismatic <= index->most[2]) {
+            if (may_hold(index, n + links, r + revolute, p + prismatic))
                 search_cell(index, size_of(n + links, r + revolute, p + prismatic), true, current,
                             distance, closest);
-            }
         }
     }
     grrl_closest_sort(closest);

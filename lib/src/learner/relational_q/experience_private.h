@@ -19,14 +19,15 @@
 /* The tables of a store. */
 enum { GRRL_TABLE_EXACT, GRRL_TABLE_SHAPE };
 
-/* Whether a state could be a sub-structure of another, judged by counts and ignoring properties. It
- * has no branches, because they would be unpredictable. */
+/* Whether a state could be a sub-structure of another, judged by counts and ignoring properties.
+ * The counts of paths come first and in a branch of their own: they rule out nine in ten. */
 static inline bool grrl_experience_fits(uint64_t part, const struct grrl_paths *part_paths,
                                         uint64_t whole, const struct grrl_paths *whole_paths)
 {
     const uint64_t guards = UINT64_C(0x8080808080808080);
-    return ((((whole | guards) - part) & guards) == guards) &
-           grrl_paths_within(part_paths, whole_paths);
+    return grrl_paths_counts_within(part_paths, whole_paths) &&
+           ((((whole | guards) - part) & guards) == guards) &
+               grrl_paths_within(part_paths, whole_paths);
 }
 
 /* Fills in what is stored of a state, except its places in tables and lists. False if its canonical

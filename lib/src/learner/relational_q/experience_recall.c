@@ -4,12 +4,20 @@
 #include "base/bits.h"
 #include "learner/relational_q/closest.h"
 #include "learner/relational_q/experience_private.h"
+#include "structure/match_private.h"
 
 /*
  * How many mappings of one search to examine before searching for each wanted pair of links
  * separately. Chains have few mappings; a star of n equal links has n factorial.
  */
 #define MAPPINGS 32
+
+/* The current state prepared for searches under one mask. */
+struct our_side {
+    bool made;
+    grrl_label mask;
+    struct grrl_match_side side;
+};
 
 /* The state of one recall, and of the stored state under examination. */
 struct job {
@@ -19,17 +27,19 @@ struct job {
     const struct grrl_experience_state *described; /* the current state as it would be stored */
     grrl_label places;                             /* its properties in use, as mask bytes */
     struct grrl_recall *recall;
-    uint32_t budget;                /* steps left for the stored state */
-    uint32_t steps;                 /* steps left for sub-structures, over the whole recall */
-    uint32_t open[GRRL_DIRECTIONS]; /* per direction: links whose entry may still improve */
-    /* current links with at least so many joints */
-    uint32_t at_least[GRRL_JOINT_TYPES][GRRL_MAX_LINKS + 1];
+    uint32_t budget;                   /* steps left for the stored state */
+    uint32_t steps;                    /* steps left for sub-structures, over the whole recall */
+    uint32_t open[GRRL_DIRECTIONS];    /* per direction: links whose entry may still improve */
+    uint32_t unknown[GRRL_DIRECTIONS]; /* those of them without an entry */
+    struct our_side our_sides[2];      /* with all properties, and with some dropped */
 
     const struct grrl_experience_state *stored;
     struct grrl_graph graph; /* of the stored state */
     enum grrl_match_kind kind;
     bool stored_is_pattern; /* false: the current one is the pattern */
     grrl_label mask;
+    const struct grrl_match_side *our; /* side of the current state */
+    const struct grrl_match_side *theirs;
     struct grrl_recall_entry closeness; /* level, distance and dropped of all its matches */
 };
 
@@ -62,53 +72,43 @@ static bool improves(const struct job *job, uint32_t experience,
     return n != entry_n ? n > entry_n : experience < entry->experience;
 }
 
-/* Computes at_least. */
-static void count_joints(struct job *job)
+/* Current links with this label under the job's mask. */
+static uint32_t labelled(const struct job *job, grrl_label label)
 {
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        for (uint8_t c = 0; c < job->current->n; c++) {
-            unsigned degree = grrl_bit_count(job->current->joined[type][c]);
-            for (unsigned k = 0; k <= degree; k++)
-                job->at_least[type][k] |= grrl_bit(c);
-        }
-    }
-}
-
-/* Current links to which stored link v could be bound, judged by degrees. */
-static uint32_t possible_bindings(const struct job *job, uint8_t v)
-{
-    uint32_t links = UINT32_MAX;
-    for (int type = 0; type < GRRL_JOINT_TYPES; type++) {
-        unsigned degree = grrl_bit_count(job->graph.joined[type][v]);
-        if (job->stored_is_pattern)
-            links &= job->at_least[type][degree];
-        if (!job->stored_is_pattern || job->kind == GRRL_MATCH_ISOMORPHISM)
-            links &= ~job->at_least[type][degree + 1];
-    }
+    uint32_t links = 0;
+    for (uint8_t c = 0; c < job->current->n; c++)
+        if (grrl_label_masked(job->current->label[c], job->mask) == label)
+            links |= grrl_bit(c);
     return links;
 }
 
 /* Finds the bindings that would give some action a closer experience; false if there are none. */
 static bool wanted_bindings(const struct job *job, struct binding *wanted)
 {
+    const bool exact = job->kind == GRRL_MATCH_ISOMORPHISM;
+    uint32_t all = 0;
     clear_binding(wanted, job->graph.n);
-    bool any = false;
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
         const uint8_t v = experience->link;
-        const grrl_label label = grrl_label_masked(job->graph.label[v], job->mask);
-        uint32_t links = job->open[experience->direction] & possible_bindings(job, v);
-        for (; links != 0; links &= links - 1u) {
-            uint8_t c = grrl_first_bit(links);
-            if (grrl_label_masked(job->current->label[c], job->mask) == label &&
-                improves(job, i, &job->recall->entry[c][experience->direction])) {
-                wanted->to[v] |= grrl_bit(c);
-                any = true;
-            }
+        const unsigned direction = experience->direction;
+        uint32_t links =
+            job->open[direction] &
+            (job->stored_is_pattern ? grrl_match_images(job->theirs, v, job->our, exact)
+                                    : grrl_match_preimages(job->our, job->theirs, v, exact));
+        if (links != 0 && job->mask != GRRL_NO_PROPERTIES)
+            links &= labelled(job, job->theirs->label[v]);
+        uint32_t known = links & ~job->unknown[direction];
+        for (; known != 0; known &= known - 1u) {
+            uint8_t c = grrl_first_bit(known);
+            if (!improves(job, i, &job->recall->entry[c][direction]))
+                links &= ~grrl_bit(c);
         }
+        wanted->to[v] |= links;
+        all |= links;
     }
-    return any;
+    return all != 0;
 }
 
 static void add_mapping(const struct job *job, const uint8_t *map, struct binding *found)
@@ -129,11 +129,27 @@ static bool covers(const struct binding *found, const struct binding *wanted, ui
     return true;
 }
 
-static void begin(const struct job *job, struct grrl_match *match)
+/* The label of some link, which few others may have. */
+static grrl_label reference_of(const struct job *job)
 {
-    const struct grrl_graph *stored = &job->graph;
-    grrl_match_begin(match, job->kind, job->stored_is_pattern ? stored : job->current,
-                     job->stored_is_pattern ? job->current : stored, job->mask, job->budget);
+    return job->current->n > 0 ? grrl_label_masked(job->current->label[0], job->mask)
+                               : GRRL_NO_PROPERTIES;
+}
+
+static const struct grrl_match_side *our_side(struct job *job)
+{
+    struct our_side *our = &job->our_sides[job->mask != GRRL_ALL_PROPERTIES];
+    if (!our->made || our->mask != job->mask)
+        grrl_match_side_of(&our->side, job->current, job->mask, reference_of(job));
+    our->made = true;
+    our->mask = job->mask;
+    return &our->side;
+}
+
+static bool begin(const struct job *job, struct grrl_match *match)
+{
+    return grrl_match_begin_sides(match, job->kind, job->stored_is_pattern ? job->theirs : job->our,
+                                  job->stored_is_pattern ? job->our : job->theirs, job->budget);
 }
 
 /* Searches for a mapping through each wanted pair that none has been found for. */
@@ -147,7 +163,7 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
                 continue;
             struct grrl_match match;
             uint8_t map[GRRL_MAX_LINKS];
-            begin(job, &match);
+            (void)begin(job, &match); /* true, as it was for all mappings */
             grrl_match_fix(&match, job->stored_is_pattern ? v : c, job->stored_is_pattern ? c : v);
             if (grrl_match_next(&match, map) == GRRL_OK)
                 add_mapping(job, map, found);
@@ -156,15 +172,14 @@ static void find_pairs(struct job *job, const struct binding *wanted, struct bin
     }
 }
 
-static void find_bindings(struct job *job, const struct binding *wanted, struct binding *found)
+static void find_bindings(struct job *job, struct grrl_match *match, const struct binding *wanted,
+                          struct binding *found)
 {
     clear_binding(found, job->graph.n);
-    struct grrl_match match;
-    begin(job, &match);
     for (int i = 0; i < MAPPINGS; i++) {
         uint8_t map[GRRL_MAX_LINKS];
-        enum grrl_status status = grrl_match_next(&match, map);
-        job->budget = match.budget;
+        enum grrl_status status = grrl_match_next(match, map);
+        job->budget = match->budget;
         if (status != GRRL_OK)
             return;
         add_mapping(job, map, found);
@@ -177,11 +192,18 @@ static void find_bindings(struct job *job, const struct binding *wanted, struct 
 /* Enters the experiences of the stored state, under the job's kind, mask and closeness. */
 static void match_stored(struct job *job)
 {
+    struct grrl_match_side theirs;
+    struct grrl_match match;
     struct binding wanted;
-    if (job->budget == 0 || !wanted_bindings(job, &wanted))
-        return;
     struct binding found;
-    find_bindings(job, &wanted, &found);
+    if (job->budget == 0)
+        return;
+    grrl_match_side_of(&theirs, &job->graph, job->mask, reference_of(job));
+    job->theirs = &theirs;
+    job->our = our_side(job);
+    if (!wanted_bindings(job, &wanted) || !begin(job, &match))
+        return;
+    find_bindings(job, &match, &wanted, &found);
     for (uint32_t i = job->stored->first; i != GRRL_NO_EXPERIENCE;
          i = job->store->experiences[i].next) {
         const struct grrl_experience *experience = &job->store->experiences[i];
@@ -193,6 +215,7 @@ static void match_stored(struct job *job)
                 *entry = job->closeness;
                 entry->experience = i;
                 entry->stored_link = experience->link;
+                job->unknown[experience->direction] &= ~(links & (0u - links));
             }
         }
     }
@@ -336,13 +359,8 @@ static bool find_open(struct job *job)
 {
     bool any = false;
     for (int direction = 0; direction < GRRL_DIRECTIONS; direction++) {
-        job->open[direction] = 0;
-        for (uint8_t link = 0; link < job->current->n; link++) {
-            if (job->recall->entry[link][direction].experience == GRRL_NO_EXPERIENCE) {
-                job->open[direction] |= grrl_bit(link);
-                any = true;
-            }
-        }
+        job->open[direction] = job->unknown[direction];
+        any = any || job->open[direction] != 0;
     }
     return any;
 }
@@ -357,13 +375,16 @@ static bool knows_open_direction(const struct job *job, const struct grrl_experi
 
 static void match_part(struct job *job, uint32_t state, uint8_t distance)
 {
-    if (!knows_open_direction(job, &job->store->states[state]))
+    const struct grrl_experience_state *stored = &job->store->states[state];
+    const struct grrl_signature *own = &job->described->signature;
+    job->stored_is_pattern = size_of(stored->signature.word[0]) < size_of(own->word[0]);
+    if (!(job->stored_is_pattern ? grrl_signature_within(&stored->signature, own, true)
+                                 : grrl_signature_within(own, &stored->signature, true)) ||
+        !knows_open_direction(job, stored))
         return;
     load_state(job, state);
     job->budget = job->budget < job->steps ? job->budget : job->steps;
     const uint32_t granted = job->budget;
-    job->stored_is_pattern =
-        size_of(job->stored->signature.word[0]) < size_of(job->described->signature.word[0]);
     match_substructure(job, distance);
     job->steps -= granted - job->budget;
 }
@@ -375,11 +396,13 @@ static void prefetch_state(const struct grrl_experience_state *state)
     grrl_prefetch(&state->first);
 }
 
+/* Prefetches its links, and its experiences as if they had been made one after another. */
 static void prefetch_links(const struct grrl_experience_store *store,
                            const struct grrl_experience_state *state)
 {
     enum { LINE_BYTES = 64 };
-    grrl_prefetch(&store->experiences[state->first]);
+    for (unsigned i = 0; i < state->experiences && i <= state->first; i += 2)
+        grrl_prefetch(&store->experiences[state->first - i]);
     grrl_prefetch(state->edge);
     for (unsigned i = 0; i < state->n; i += LINE_BYTES / sizeof state->label[0])
         grrl_prefetch(&state->label[i]);
@@ -457,8 +480,7 @@ void grrl_experience_recall(const struct grrl_experience_store *store,
                       .places = places_in_use(state),
                       .recall = recall};
     for (int direction = 0; direction < GRRL_DIRECTIONS; direction++)
-        job.open[direction] = grrl_bits_below(state->n);
-    count_joints(&job);
+        job.open[direction] = job.unknown[direction] = grrl_bits_below(state->n);
     match_isomorphic(&job);
     if (config->deepest >= GRRL_RECALL_SUBSTRUCTURE)
         match_parts(&job);

@@ -85,6 +85,8 @@ struct grrl_experience_index {
     struct grrl_experience_row *rows;
     uint32_t start[GRRL_EXPERIENCE_CELLS + 1]; /* first row of each cell, end of the last */
     uint8_t most[1 + GRRL_JOINT_TYPES]; /* most links, and most joints of each type, in any row */
+    int8_t fewest_spare;                /* joints beyond one per link, in any row */
+    int8_t most_spare;
 };
 
 struct grrl_experience_store {
