@@ -154,6 +154,9 @@ if ! cmp "$work/ab" "$work/ba"; then
     echo "merge depends on the order"
     failures=$((failures + 1))
 fi
+expect 0 '' merge "$store" "$store" "$work/twice" "$work/three"
+expect 2 "grrl-term: merge requires two or more stores and a new file
+$try" merge "$store" "$work/one"
 rm -r "$work"
 
 [ "$failures" -eq 0 ] || {

@@ -18,6 +18,9 @@
 enum { EXIT_FINE = 0, EXIT_NO = 1 };
 enum { MAX_TEXT_BYTES = 65536, MAX_NODES = 16384 };
 
+/* The command, up to 32 stores and a new one. */
+enum { MAX_ARGUMENTS = 34 };
+
 /* Far more than any structure of 32 links needs, unless it was designed to be hard. */
 enum { MATCH_BUDGET = 10000000 };
 
@@ -28,7 +31,7 @@ static const struct grrl_program program = {
              "       grrl-term canonical [--ignore-properties] TERM\n"
              "       grrl-term match [--all] A B\n"
              "       grrl-term rules STORE\n"
-             "       grrl-term merge STORE STORE OUT",
+             "       grrl-term merge STORE STORE.. OUT",
     .intro =
         "\n"
         "parse      the term in its normal form\n"
@@ -40,7 +43,7 @@ static const struct grrl_program program = {
         "rules      what a store of the policy learn says about pushes, as few rules: how many of "
         "how\n"
         "           many pushes revealed something, and how many links and joints a push revealed\n"
-        "merge      two stores of learn as one, in a new file, whatever the order\n",
+        "merge      stores of learn as one, in a new file: what all their objects have in common\n",
     .outro = "TERM is a term or - for standard input:\n"
              "  L(s, f1)  f1  v1  l1  lb     links: small, by features, variable, by number, "
              "background\n"
@@ -50,7 +53,7 @@ static const struct grrl_program program = {
              "  x & y                        and\n"
              "  A(x, 45)                     an action: push link x from 45 degrees\n\n"
              "Exit status: 0 success, 1 no match or an error in a term, 2 wrong usage.\n",
-    .max_arguments = 4,
+    .max_arguments = MAX_ARGUMENTS,
     .arguments = "one term too many",
 };
 
@@ -61,7 +64,8 @@ struct options {
     bool dot;
     bool ignore_properties;
     bool all;
-    char **terms;
+    char **terms; /* or files */
+    int n_terms;
 };
 
 /* A term from the command line as a structure. */
@@ -336,7 +340,8 @@ static int run_rules(const struct options *options)
 
 static int run_merge(const struct options *options)
 {
-    bool merged = term_store_merge(options->terms[0], options->terms[1], options->terms[2]);
+    int n = options->n_terms - 1;
+    bool merged = term_store_merge(options->terms, n, options->terms[n]);
     return merged ? EXIT_FINE : EXIT_NO;
 }
 
@@ -375,7 +380,7 @@ static int run_match(const struct options *options)
 
 struct command {
     const char *name;
-    int n_terms; /* or files */
+    int n_terms; /* or files; merge takes more */
     int (*run)(const struct options *options);
 };
 
@@ -393,9 +398,9 @@ static const struct command *find_command(const char *name)
 }
 
 /* The error in the command, its options or its terms, or NULL. */
-static const char *wrong_usage(const struct command *command, const struct options *options,
-                               int n_terms)
+static const char *wrong_usage(const struct command *command, const struct options *options)
 {
+    int n_terms = options->n_terms;
     if (command == NULL)
         return "the command is parse, graph, canonical, match, rules or merge";
     if (options->dot && command->run != run_graph)
@@ -404,9 +409,9 @@ static const char *wrong_usage(const struct command *command, const struct optio
         return "--ignore-properties requires canonical";
     if (options->all && command->run != run_match)
         return "--all requires match";
-    if (n_terms != command->n_terms)
+    if (n_terms != command->n_terms && !(command->run == run_merge && n_terms > command->n_terms))
         return command->run == run_rules    ? "rules requires one store"
-               : command->run == run_merge  ? "merge requires two stores and a new file"
+               : command->run == run_merge  ? "merge requires two or more stores and a new file"
                : n_terms < command->n_terms ? "too few terms"
                                             : "one term too many";
     if (n_terms == 2 && strcmp(options->terms[0], "-") == 0 && strcmp(options->terms[1], "-") == 0)
@@ -430,7 +435,8 @@ int main(int argc, char **argv)
         return parsed;
     const struct command *command = first < argc ? find_command(argv[first]) : NULL;
     options.terms = argv + first + 1;
-    const char *wrong = wrong_usage(command, &options, argc - first - 1);
+    options.n_terms = argc - first - 1;
+    const char *wrong = wrong_usage(command, &options);
     if (wrong != NULL)
         return grrl_options_wrong(&program, wrong);
     grrl_term_store_init(&store, nodes, MAX_NODES);

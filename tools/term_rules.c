@@ -8,7 +8,8 @@
 
 #include "term_store.h"
 
-enum { MAX_RULES = 24, MAX_VALUES = 8 };
+/* More rules explain fewer choices of the learner: leaves as good as each other compete. */
+enum { MAX_RULES = 12, MAX_VALUES = 8 };
 
 /* A rule holds for at least this share of all pushes. */
 #define LEAST_SHARE 0.01

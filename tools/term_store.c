@@ -5,6 +5,9 @@
 
 enum { MAX_CASES = 8192 };
 
+/* Of all stores of a merge together. */
+enum { MAX_CASES_OF_ALL = 65536 };
+
 /* A merged store holds as many cases as grrl-agent remembers by default. */
 enum { MERGED_CASES = 1000 };
 
@@ -62,22 +65,29 @@ static bool save(const char *path, const struct grrl_case_base *base)
     return fine;
 }
 
-bool term_store_merge(const char *a, const char *b, const char *out)
+bool term_store_merge(char *const *paths, int n, const char *out)
 {
-    static struct grrl_case cases[2][2 * MAX_CASES];
-    struct grrl_case_base base[2];
+    static struct grrl_case cases[MAX_CASES_OF_ALL];
+    static struct grrl_case further[MAX_CASES];
+    struct grrl_case_base all;
     struct grrl_case_config config;
     grrl_case_config_default(&config);
-    for (int i = 0; i < 2; i++) {
-        grrl_cases_init(&base[i], cases[i], MAX_CASES);
-        if (!load(i == 0 ? a : b, &base[i]))
-            return false;
-    }
-    base[0].capacity = 2 * MAX_CASES;
-    enum grrl_status status = grrl_cases_merge(&base[0], &base[1], &config, MERGED_CASES);
-    if (status != GRRL_OK) {
-        fprintf(stderr, "grrl-term: %s\n", grrl_status_text(status));
+    grrl_cases_init(&all, cases, MAX_CASES_OF_ALL);
+    if (!load(paths[0], &all))
         return false;
+    for (int i = 1; i < n; i++) {
+        struct grrl_case_base base;
+        grrl_cases_init(&base, further, MAX_CASES);
+        if (!load(paths[i], &base))
+            return false;
+        /* what is rare in each life may be frequent in all, so only the last merge drops cases */
+        uint32_t most = i + 1 < n ? MAX_CASES_OF_ALL : MERGED_CASES;
+        enum grrl_status status = grrl_cases_merge(&all, &base, &config, most);
+        if (status != GRRL_OK) {
+            fprintf(stderr, "grrl-term: %s: %s; at most %d cases in all can be merged\n", paths[i],
+                    grrl_status_text(status), MAX_CASES_OF_ALL);
+            return false;
+        }
     }
-    return save(out, &base[0]);
+    return save(out, &all);
 }

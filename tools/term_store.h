@@ -8,7 +8,8 @@
 #include "grrl/learner/cases/case_base.h"
 
 bool term_store_rules(const char *path);
-bool term_store_merge(const char *a, const char *b, const char *out);
+/* Merges n >= 2 stores, one after another. */
+bool term_store_merge(char *const *paths, int n, const char *out);
 
 /* Prints the cases as rules, the best first. */
 void term_rules_print(const struct grrl_case_base *base);

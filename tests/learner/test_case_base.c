@@ -360,6 +360,26 @@ static void merged_rewards_are_pooled(void **state)
     assert_true(fabsf(f.base.cases[0].value_all - 1.5f) < 1e-6f);
 }
 
+/* A merged life expects what all objects have in common, not what either life met last. */
+static void a_merge_drops_rewards_of_the_latest_objects(void **state)
+{
+    (void)state;
+    static struct grrl_case cases[CAPACITY];
+    struct grrl_case_base other;
+    struct grrl_context a = context(0, 0);
+    grrl_cases_init(&other, cases, CAPACITY);
+    for (int i = 0; i < 3; i++) {
+        (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 2.0f);
+        grrl_cases_begin_trial(&f.base, &f.config);
+    }
+    (void)grrl_cases_learn(&f.base, &f.config, grrl_context_key(&a), 2.0f);
+    assert_int_equal(grrl_cases_merge(&f.base, &other, &f.config, CAPACITY), GRRL_OK);
+    assert_int_equal(f.base.cases[0].n, 0);
+    assert_int_equal(f.base.cases[0].n_new, 0);
+    float prior = (f.config.prior + 4.0f * 2.0f) / (1.0f + 4.0f); /* of one and four rewards */
+    assert_true(fabsf(estimate(&a) - prior) < 1e-6f);
+}
+
 static void the_best_founded_cases_outlive_a_merge(void **state)
 {
     (void)state;
@@ -530,6 +550,7 @@ int main(void)
         cmocka_unit_test_setup(counts_of_a_full_case_are_halved, set_up),
         cmocka_unit_test_setup(two_lives_merge_in_either_order, set_up),
         cmocka_unit_test_setup(merged_rewards_are_pooled, set_up),
+        cmocka_unit_test_setup(a_merge_drops_rewards_of_the_latest_objects, set_up),
         cmocka_unit_test_setup(the_best_founded_cases_outlive_a_merge, set_up),
         cmocka_unit_test_setup(the_case_not_met_for_the_longest_time_makes_room, set_up),
         cmocka_unit_test_setup(a_wrong_configuration_is_refused, set_up),

@@ -1,9 +1,13 @@
 /* case_merge.c: two case bases become one, whatever the order. */
 #include "grrl/learner/cases/case_base.h"
 
-static float pooled(float a, unsigned n_a, float b, unsigned n_b)
+/* What is left of a life on other objects: what all of them have in common. */
+static void forget_objects(struct grrl_case_base *base)
 {
-    return n_a + n_b > 0 ? ((float)n_a * a + (float)n_b * b) / (float)(n_a + n_b) : 0.0f;
+    for (uint32_t i = 0; i < base->n; i++) {
+        base->cases[i].n = base->cases[i].n_new = 0;
+        base->cases[i].value = base->cases[i].value_new = 0.0f;
+    }
 }
 
 /* The rewards of one context from two lives; each sum is the same in either order. */
@@ -11,9 +15,8 @@ static void pool(struct grrl_case *into, const struct grrl_case *from)
 {
     unsigned n_all = (unsigned)into->n_all + from->n_all;
     unsigned n_found = (unsigned)into->n_found + from->n_found;
-    into->value_all = pooled(into->value_all, into->n_all, from->value_all, from->n_all);
-    into->value = pooled(into->value, into->n, from->value, from->n);
-    into->n = into->n > from->n ? into->n : from->n;
+    float sum = (float)into->n_all * into->value_all + (float)from->n_all * from->value_all;
+    into->value_all = n_all > 0 ? sum / (float)n_all : 0.0f;
     for (; n_all > GRRL_CASE_REWARDS; n_all /= 2)
         n_found /= 2;
     into->n_all = (uint8_t)n_all;
@@ -74,8 +77,8 @@ enum grrl_status grrl_cases_merge(struct grrl_case_base *base, struct grrl_case_
 {
     if (base->capacity < base->n || base->capacity - base->n < from->n)
         return GRRL_ERR_FULL;
-    grrl_cases_begin_trial(base, config);
-    grrl_cases_begin_trial(from, config);
+    forget_objects(base);
+    forget_objects(from);
     uint32_t clock = base->clock > from->clock ? base->clock : from->clock;
     shift(base, clock);
     shift(from, clock);

@@ -134,10 +134,10 @@ GRRL_MUST_USE enum grrl_status grrl_cases_load(struct grrl_case_base *base,
 /*
  * Adds the cases of another base, so that two lives become one; which is added to which makes no
  * difference. Rewards in the same context are pooled, and both lives end now: a case is as old as
- * in the life that met it last. Keeps the `most` cases with the most rewards; of as many, those
- * that were met last.
- * Both bases start a new trial. GRRL_ERR_FULL: the first has no room for the cases of both. Cost:
- * quadratic in cases.
+ * in the life that met it last. What remains is what all objects have in common: rewards of the
+ * latest objects are dropped from both, because the next object is like neither life's last.
+ * Keeps the `most` cases with the most rewards; of as many, those that were met last.
+ * GRRL_ERR_FULL: the first has no room for the cases of both. Cost: quadratic in cases.
  */
 GRRL_MUST_USE enum grrl_status grrl_cases_merge(struct grrl_case_base *base,
                                                 struct grrl_case_base *from,
