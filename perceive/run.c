@@ -113,7 +113,7 @@ static void observe_growing(struct grrl_run *run, const struct grrl_perception_c
                             const struct grrl_tracks *tracks)
 {
     struct grrl_perception_config growing = *config;
-    if (config->static_background || !sizes_change(&run->perception))
+    if (config->static_background || !(run->camera.zoomed || sizes_change(&run->perception)))
         return;
     run->rigid = run->perception;
     growing.sizes_change = true;
@@ -151,6 +151,11 @@ static enum grrl_run_result perceive(struct grrl_run *run,
         run->status = observe(&run->perception, tracks);
     if (run->status == GRRL_OK)
         observe_growing(run, config, tracks);
+    /* An update divides a body only once. Points in no body are those of solids, or badly tracked:
+     * dividing on would only make splinters. */
+    if (run->status == GRRL_OK && tracks->log.size == 0 &&
+        unassigned(grrl_perception_model(&run->perception)) == 0)
+        run->status = grrl_perception_update(&run->perception);
     if (run->status == GRRL_ERR_NONE)
         return run->perception.counts.refused > 0 ? GRRL_RUN_TOO_FAR : GRRL_RUN_NOTHING_SEEN;
     return run->status == GRRL_OK ? GRRL_RUN_FINE : GRRL_RUN_FAILED;

@@ -79,7 +79,7 @@ static void extend(uint8_t body, const uint16_t *slots, uint16_t n, const float 
             uint16_t slot = slots[i];
             bool is_free = copy.body_of[slot] == GRRL_FEATURE_NONE;
             if (is_free && copy.keyframe[reference].weight[slot] == 0 &&
-                grrl_assign_follows(&copy, slot, body)) {
+                grrl_assign_follows(&copy, slot, body, 2)) {
                 copy.body_of[slot] = body;
                 joined++;
             }
@@ -106,29 +106,51 @@ static void split(uint8_t body)
     extend(body, slots, n, score);
 }
 
+/* In pictures a feature at a joint, which moves with both bodies, is enough for the last one. */
+static int least_own(void)
+{
+    return copy.config.static_background ? copy.config.min_features : copy.config.min_features - 1;
+}
+
+static bool is_body(uint8_t body)
+{
+    int seen = 0;
+    bool followed = false;
+    for (int k = 0; k < copy.n_keyframes; k++)
+        seen += copy.pose[k][body].weight > 0.0f;
+    for (uint16_t i = 0; i < copy.n_slots; i++)
+        if (copy.body_of[i] < copy.n_bodies && copy.body_of[i] != body)
+            followed = followed || grrl_assign_follows(&copy, i, body, (uint16_t)(1 + seen / 2));
+    int n = count_of(body);
+    return n >= copy.config.min_features || (followed && n >= least_own());
+}
+
 /* New bodies of features that have none, as long as there are any. */
 static void adopt(void)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
-    uint16_t found = GRRL_MAX_FEATURES;
-    while (found >= copy.config.min_features) {
+    bool found_one = true;
+    while (found_one) {
         uint16_t n = features_of(GRRL_FEATURE_NONE, slots);
         uint8_t body = copy.n_bodies;
-        if (n < copy.config.min_features || body == GRRL_MAX_LINKS)
+        if (n < least_own() || body == GRRL_MAX_LINKS)
             return;
         give_all(GRRL_FEATURE_NONE, body);
         fit(body);
         (void)grrl_consensus_misfit(&copy, slots, n, body, score);
-        found = grrl_consensus_find(&copy, slots, n, score, members);
+        uint16_t found = grrl_consensus_find(&copy, slots, n, score, members);
         give_all(body, GRRL_FEATURE_NONE);
-        for (int i = 0; i < found && found >= copy.config.min_features; i++)
+        for (int i = 0; i < found && found >= least_own(); i++)
             copy.body_of[members[i]] = body;
-        if (found >= copy.config.min_features) {
+        fit(body);
+        found_one = is_body(body);
+        if (found_one) {
             copy.number[copy.n_bodies++] = ++copy.n_numbers;
-            fit(body);
             extend(body, slots, n, score);
+        } else {
+            give_all(body, GRRL_FEATURE_NONE);
         }
     }
 }
@@ -153,14 +175,14 @@ static void assign_all(void)
 static void take_out_small(void)
 {
     for (uint8_t b = copy.n_bodies; b-- > 0;)
-        if (count_of(b) < copy.config.min_features)
+        if (!is_body(b))
             take_out(b);
 }
 
 /* Two that look like two things at rest, and a third turns against both in one place. */
 static bool are_one_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
-    return grrl_structure_turn_as_one(p, a, b) && grrl_apart_are_still(p, a, b) &&
+    return grrl_structure_move_as_one(p, a, b) && grrl_apart_are_still(p, a, b) &&
            !grrl_assign_bodies_may_share(p, a, b);
 }
 
@@ -229,7 +251,7 @@ static void take_out_redundant(void)
         grrl_assign_find_origins(&copy, &origins);
         for (int i = 0; i < n; i++)
             own += !grrl_assign_fits_elsewhere(&copy, &origins, slots[i], n);
-        if (own < copy.config.min_features) {
+        if (own < least_own()) {
             take_out(b);
             assign_all();
         } else {

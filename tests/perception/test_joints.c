@@ -490,6 +490,8 @@ static void make_pair(int motion, int n_features, int n_keyframes, double size, 
         scene_body[k][2] = then(scene_body[k][1], joint);
     }
     scene_see(noise, 0.1);
+    for (int i = 0; i < scene.n_slots; i++)
+        scene.has_moved[i] = true;
     for (int k = 0; k < n_keyframes; k++) { /* a body drawn aside in a push */
         double draw = scene_chance(0.1) ? 0.004 : 0.0;
         for (int i = 0; i < scene.n_slots && !scene.keyframe[k].at_rest; i++)

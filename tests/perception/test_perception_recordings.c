@@ -285,6 +285,81 @@ static void a_link_at_rest_in_two_groups(void **state)
     assert_hinge((struct point){0.0, 0.0}, 0.004);
 }
 
+/* --- few points ---------------------------------------------------------------------------------
+ */
+
+static void add_ground(void)
+{
+    for (int row = 0; row < 3; row++)
+        add_points(0, 4, -0.6, 0.6, 0.35);
+}
+
+/* Two links in front of the ground, hinged where a point of the second one is. */
+static void fold(double t)
+{
+    pose[1] = place(-0.3 + 0.1 * ease(t), 0.0, 0.4 * ease(t));
+    pose[2] = then(pose[1], place(0.14, 0.0, 0.3 + 0.9 * ease(t)));
+}
+
+/* A point of the hinge moves with either link. It belongs to one and counts for both. */
+static void links_of_four_points(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = pictures();
+    for (int i = 0; i < 4; i++) {
+        begin(&config, "links_of_four_points");
+        add_ground();
+        add_points(1, 4, -0.15, 0.13, 0.04);
+        add_points(2, 1, -0.002, 0.002, 0.002);
+        add_points(2, 3, 0.04, 0.24, 0.03);
+        perceive(&(struct recording){60, 0.0005, fold, NULL, NULL});
+        assert_int_equal(model->n_bodies, 3);
+        assert_int_equal(model->n_joints, 1);
+        assert_int_equal(model->joint[0].type, GRRL_REVOLUTE);
+    }
+}
+
+/* In each three frames of the first third the tracker misses two of the four points that move, once
+ * each. */
+static bool all_but_two(int point, int frame, int frames)
+{
+    return point >= 2 || frame % 3 != point || frame > frames / 3;
+}
+
+/* A keyframe that saw hardly anything move does not hide what moves after it. */
+static void keyframes_that_miss_points(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = pictures();
+    begin(&config, "keyframes_that_miss_points");
+    add_points(1, 4, 0.005, 0.25, 0.03);
+    add_ground();
+    perceive(&(struct recording){90, 0.0005, turn_once, all_but_two, NULL});
+    assert_in_range(scene.counts.keyframes_high, 8, GRRL_MAX_KEYFRAMES);
+    assert_int_equal(model->n_bodies, 2);
+    assert_int_equal(model->n_joints, 1);
+}
+
+static void slide_once(double t)
+{
+    pose[1] = place(0.06 * ease(t), 0.0, 0.0);
+}
+
+/* Two pieces of the ground at rest look like two links, and the drawer slides along either. */
+static void a_drawer_between_pieces_of_the_ground(void **state)
+{
+    (void)state;
+    struct grrl_perception_config config = table();
+    begin(&config, "a_drawer_between_pieces_of_the_ground");
+    add_points(0, 14, -0.13, -0.01, 0.02);
+    add_points(0, 8, 0.25, 0.32, 0.02);
+    add_points(1, 14, 0.0, 0.12, 0.02);
+    perceive(&(struct recording){60, 0.0006, slide_once, NULL, NULL});
+    assert_int_equal(model->n_bodies, 2);
+    assert_int_equal(model->n_joints, 1);
+    assert_int_equal(model->joint[0].type, GRRL_PRISMATIC);
+}
+
 /* --- sizes that change --------------------------------------------------------------------------
  */
 
@@ -500,6 +575,9 @@ int main(void)
         cmocka_unit_test(a_turn_far_from_the_other),
         cmocka_unit_test(a_slide_past_the_body_between),
         cmocka_unit_test(a_link_at_rest_in_two_groups),
+        cmocka_unit_test(links_of_four_points),
+        cmocka_unit_test(keyframes_that_miss_points),
+        cmocka_unit_test(a_drawer_between_pieces_of_the_ground),
         cmocka_unit_test(a_hinge_before_a_camera_that_zooms),
         cmocka_unit_test(what_comes_nearer_is_one_thing),
         cmocka_unit_test(a_plane_keeps_its_size),

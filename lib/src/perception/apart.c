@@ -220,6 +220,12 @@ bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b)
     return !is_far(p, &range);
 }
 
+bool grrl_apart_never_moved(const struct grrl_perception *p, uint8_t a, uint8_t b)
+{
+    return grrl_perception_on_table(p) && !rests_tell_alone(p, a, b) &&
+           !grrl_assign_body_has_moved(p, a) && !grrl_assign_body_has_moved(p, b);
+}
+
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     struct grrl_apart_range range = grrl_apart_range_between(p, a, b);

@@ -166,7 +166,8 @@ static void try_body(const struct grrl_perception *p, const struct grrl_assign_o
         *best = (struct candidate){body, excess};
 }
 
-bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body)
+bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body,
+                         uint16_t least)
 {
     struct grrl_vec2 local;
     uint16_t n = 0;
@@ -174,7 +175,7 @@ bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t
         return false;
     float cost =
         grrl_rigid_cost(p, slot, local, &p->pose[0][body], GRRL_MAX_LINKS, GRRL_COST_ANY, &n);
-    return n >= 2 && cost < cost_limit(p, n);
+    return n >= least && cost < cost_limit(p, n);
 }
 
 uint8_t grrl_assign_best(const struct grrl_perception *p, const struct grrl_assign_origins *origins,

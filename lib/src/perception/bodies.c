@@ -59,12 +59,13 @@ static void remove_body(struct grrl_perception *p, uint8_t body)
     p->n_bodies--;
 }
 
-/* Two separate blobs at rest may be one link with few visible features. They are if another body
- * turns relative to both about the same point: two links would have two such points. */
+/* Two separate blobs at rest may be one link with few visible features, or pieces of the ground.
+ * They are one if another body turns relative to both about the same point: two links would have
+ * two such points. In a recording also if it slides along both. */
 static bool are_one_link_at_rest(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     return !grrl_assign_bodies_may_share(p, a, b) && grrl_apart_are_still(p, a, b) &&
-           grrl_structure_turn_as_one(p, a, b);
+           grrl_structure_move_as_one(p, a, b);
 }
 
 /* Merges every pair of bodies that are one: those that never moved apart or, at rest, two blobs of
@@ -128,13 +129,39 @@ static void reassign(struct grrl_perception *p)
         p->is_assigned = !reassign_once(p, &changed);
 }
 
+/* Features that only one body explains, of the min_features that it needs. In pictures a link may
+ * have no more than these, and one near a joint counts for both. */
+static uint16_t least_of_its_own(const struct grrl_perception *p)
+{
+    return (uint16_t)(p->config.min_features - (grrl_perception_on_table(p) ? 0 : 1));
+}
+
+/* Whether a feature of another body moves with this one, too, in most keyframes. */
+static bool has_follower(const struct grrl_perception *p, uint8_t body)
+{
+    uint16_t seen = 0;
+    for (uint8_t k = 0; k < p->n_keyframes; k++)
+        seen = (uint16_t)(seen + (p->pose[k][body].weight > 0.0f ? 1 : 0));
+    for (uint16_t i = 0; i < p->n_slots; i++)
+        if (p->body_of[i] < p->n_bodies && p->body_of[i] != body &&
+            grrl_assign_follows(p, i, body, (uint16_t)(seen / 2 + 1)))
+            return true;
+    return false;
+}
+
+/* Whether n features of its own make a body. */
+static bool are_enough(const struct grrl_perception *p, uint8_t body, uint16_t n)
+{
+    return n >= p->config.min_features || (n >= least_of_its_own(p) && has_follower(p, body));
+}
+
 /* Removes bodies with too few features. */
 static void dissolve_small(struct grrl_perception *p)
 {
     for (uint8_t b = 0; b < p->n_bodies; b++) {
         uint16_t slots[GRRL_MAX_FEATURES];
         uint16_t n = grrl_rigid_slots(p, b, slots);
-        if (n < p->config.min_features) {
+        if (!are_enough(p, b, n)) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
             remove_body(p, b--);
@@ -146,7 +173,7 @@ static void dissolve_small(struct grrl_perception *p)
  * moved away, is the table beside the object. */
 static void give_back_the_table(struct grrl_perception *p)
 {
-    for (uint8_t b = 0; b < p->n_bodies && p->config.static_background; b++) {
+    for (uint8_t b = 0; b < p->n_bodies && grrl_perception_on_table(p); b++) {
         if (grrl_assign_body_has_moved(p, b) || grrl_initial_is_compact(p, b))
             continue;
         for (uint16_t i = 0; i < p->n_slots; i++) {
@@ -167,12 +194,13 @@ static void dissolve_redundant(struct grrl_perception *p)
         uint16_t slots[GRRL_MAX_FEATURES];
         struct grrl_assign_origins origins;
         uint16_t n = grrl_rigid_slots(p, b, slots);
+        uint16_t least = least_of_its_own(p);
         uint16_t unique = 0;
         grrl_assign_find_origins(p, &origins);
-        for (uint16_t i = 0; i < n && unique < p->config.min_features; i++)
+        for (uint16_t i = 0; i < n && unique < least; i++)
             unique =
                 (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, &origins, slots[i], n) ? 0 : 1));
-        if (unique < p->config.min_features) {
+        if (unique < least) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
             remove_body(p, b--);
@@ -244,7 +272,7 @@ static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t 
         for (uint16_t i = 0; i < n; i++) {
             if (p->body_of[slots[i]] == GRRL_FEATURE_NONE &&
                 p->keyframe[reference].weight[slots[i]] == 0 &&
-                grrl_assign_follows(p, slots[i], body)) {
+                grrl_assign_follows(p, slots[i], body, 2)) {
                 p->body_of[slots[i]] = body;
                 gained = true;
             }
@@ -283,7 +311,7 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
     uint16_t n = grrl_rigid_slots(p, GRRL_FEATURE_NONE, slots);
-    if (n < p->config.min_features || p->n_bodies == GRRL_MAX_LINKS)
+    if (n < least_of_its_own(p) || p->n_bodies == GRRL_MAX_LINKS)
         return false;
     uint8_t body = p->n_bodies;
     for (uint16_t i = 0; i < n; i++)
@@ -293,12 +321,17 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t n_members = grrl_consensus_find(p, slots, n, score, members);
     for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-    if (n_members < p->config.min_features)
+    if (n_members < least_of_its_own(p))
         return false;
     for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
-    grrl_bodies_add(p);
     fit_body(p, body);
+    if (!are_enough(p, body, n_members)) {
+        for (uint16_t i = 0; i < n_members; i++)
+            p->body_of[members[i]] = GRRL_FEATURE_NONE;
+        return false;
+    }
+    grrl_bodies_add(p);
     extend_body(p, body, slots, n, score);
     return true;
 }

@@ -260,15 +260,41 @@ static uint16_t followers(const struct grrl_perception *p, const uint16_t *slots
     return n_members;
 }
 
+/* Whether two features may move as one: in pictures, where links may have hardly more features than
+ * a group, only those that keep their distance. */
+static bool may_move_as_one(const struct grrl_perception *p, uint16_t i, uint16_t j, uint8_t k0,
+                            const struct choice_of_keyframes *chosen)
+{
+    float cost = 0.0f;
+    float count = 0.0f;
+    float at_k0 =
+        grrl_sqrt(grrl_vec2_distance2(p->keyframe[k0].point[i], p->keyframe[k0].point[j]));
+    if (chosen == NULL)
+        return true;
+    for (uint8_t c = 0; c < chosen->n; c++) {
+        const struct grrl_perception_keyframe *key = &p->keyframe[chosen->k[c]];
+        uint8_t least = key->weight[i] < key->weight[j] ? key->weight[i] : key->weight[j];
+        if (least == 0)
+            continue;
+        float change = grrl_sqrt(grrl_vec2_distance2(key->point[i], key->point[j])) - at_k0;
+        float d2 = change * change / (4.0f * grrl_perception_variance(p, least));
+        cost += d2 < GRRL_COST_CAP ? d2 : GRRL_COST_CAP;
+        count += 1.0f;
+    }
+    return cost <= INLIER_COST * count;
+}
+
 /* The seed and its nearest neighbours in the reference keyframe. */
 static uint16_t seed_group(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
-                           uint16_t seed, uint8_t k0, uint16_t *group)
+                           uint16_t seed, uint8_t k0, const struct choice_of_keyframes *chosen,
+                           uint16_t *group)
 {
     float d2[SEED_NEIGHBOURS];
     uint16_t n_group = 1;
     group[0] = seed;
     for (uint16_t i = 0; i < n; i++) {
-        if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0)
+        if (slots[i] == seed || p->keyframe[k0].weight[slots[i]] == 0 ||
+            !may_move_as_one(p, seed, slots[i], k0, chosen))
             continue;
         float d = grrl_vec2_distance2(p->keyframe[k0].point[seed], p->keyframe[k0].point[slots[i]]);
         uint16_t at = n_group;
@@ -329,6 +355,32 @@ static uint16_t grow(const struct grrl_perception *p, const uint16_t *slots, uin
     return n_group;
 }
 
+/* The largest group that grows from seeds and their nearest neighbours, or those of them that
+ * `keep` their distance; returns its size. */
+static uint16_t largest_group(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
+                              uint8_t k0, const struct choice_of_keyframes *chosen, bool keep,
+                              uint16_t *members)
+{
+    uint16_t best = 0;
+    uint16_t n_members = 0;
+    uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
+    struct explained explained = {{0}};
+    for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
+        uint16_t group[GRRL_MAX_FEATURES];
+        if (p->keyframe[k0].weight[slots[i]] == 0 || is_explained(&explained, slots[i]))
+            continue;
+        uint16_t n_group = seed_group(p, slots, n, slots[i], k0, keep ? chosen : NULL, group);
+        uint16_t stable = n_group;
+        n_group = grow(p, slots, n, k0, chosen, &explained, group, &stable);
+        if (stable > best) {
+            best = stable;
+            n_members = n_group;
+            memcpy(members, group, n_group * sizeof group[0]);
+        }
+    }
+    return n_members;
+}
+
 /* The largest set of features in `slots` that moved as one; returns its size, members[]. */
 uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *slots, uint16_t n,
                              const float *score, uint16_t *members)
@@ -339,22 +391,9 @@ uint16_t grrl_consensus_find(const struct grrl_perception *p, const uint16_t *sl
     for (uint16_t i = 0; i < n; i++)
         if (p->keyframe[k0].weight[slots[i]] > 0)
             chosen.variance[i] = grrl_perception_variance(p, p->keyframe[k0].weight[slots[i]]);
-    uint16_t best = 0;
-    uint16_t n_members = 0;
-    uint16_t step = (uint16_t)(1 + n / (SEEDS_MAX + 1));
-    struct explained explained = {{0}};
-    for (uint16_t i = 0; i < n; i = (uint16_t)(i + step)) {
-        uint16_t group[GRRL_MAX_FEATURES];
-        if (p->keyframe[k0].weight[slots[i]] == 0 || is_explained(&explained, slots[i]))
-            continue;
-        uint16_t n_group = seed_group(p, slots, n, slots[i], k0, group);
-        uint16_t stable = n_group;
-        n_group = grow(p, slots, n, k0, &chosen, &explained, group, &stable);
-        if (stable > best) {
-            best = stable;
-            n_members = n_group;
-            memcpy(members, group, n_group * sizeof group[0]);
-        }
-    }
+    uint16_t n_members = largest_group(p, slots, n, k0, &chosen, false, members);
+    if (n_members < p->config.min_features && !grrl_perception_on_table(p) &&
+        !p->config.sizes_change)
+        n_members = largest_group(p, slots, n, k0, &chosen, true, members);
     return n_members;
 }

@@ -178,13 +178,13 @@ void grrl_initial_segmentation(struct grrl_perception *p)
     float values[GRRL_MAX_FEATURES];
     uint16_t n = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
-        p->body_of[i] = p->config.static_background ? GRRL_FEATURE_BACKGROUND : 0;
-        p->blob_of[i] = p->config.static_background ? 0 : 1;
+        p->body_of[i] = grrl_perception_on_table(p) ? GRRL_FEATURE_BACKGROUND : 0;
+        p->blob_of[i] = grrl_perception_on_table(p) ? 0 : 1;
         uint8_t k = first_keyframe(p, i);
         if (k < p->n_keyframes)
             values[n++] = neighbour_distance2(p, i, k);
     }
-    if (!p->config.static_background) {
+    if (!grrl_perception_on_table(p)) {
         grrl_bodies_add(p);
         return;
     }

@@ -10,8 +10,8 @@
 /* A background is this many times as wide as the bodies in front of it. */
 #define WIDE 2.0f
 
-/* Share of min_slide_m from keyframe to keyframe: less does not count as sliding during a turn. */
-#define STEP_SHARE 0.5f
+/* Share of min_slide_m from either end of a slide: closer to it, a hand may hold or carry. */
+#define END_SHARE 0.5f
 
 /* Limit on the evidence from one return: of a hundred things that move by themselves, one goes back
  * and forth on a line (2 ln 100). */
@@ -32,16 +32,23 @@ static float absolute(float x)
     return x < 0.0f ? -x : x;
 }
 
+/* The mean squared distance of the features seen in a keyframe from their centroid: a single
+ * misplaced one hardly counts. */
+static float width2(const struct grrl_perception_pose *pose)
+{
+    return pose->weight > 0.0f ? pose->inertia / pose->weight : 0.0f;
+}
+
 /* The body that reveals the camera's own motion: the widest, if it is wide enough to lie behind a
  * and b rather than beside them. GRRL_MAX_LINKS: there is none. */
-static uint8_t background_of(const struct grrl_perception *p, uint8_t a, uint8_t b)
+static uint8_t background_of(const struct grrl_perception *p,
+                             const struct grrl_perception_pose *poses, uint8_t a, uint8_t b)
 {
-    float widest = WIDE * larger(grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b));
+    float widest2 = WIDE * WIDE * larger(width2(&poses[a]), width2(&poses[b]));
     uint8_t background = GRRL_MAX_LINKS;
     for (uint8_t c = 0; c < p->n_bodies; c++) {
-        float width = grrl_joint_half_extent(p, c);
-        if (width > widest) {
-            widest = width;
+        if (width2(&poses[c]) > widest2) {
+            widest2 = width2(&poses[c]);
             background = c;
         }
     }
@@ -70,6 +77,46 @@ static float slid(const struct grrl_perception_pose *poses, const struct grrl_jo
     return grrl_vec2_dot(grrl_origin_in(&poses[e->a], &poses[e->b]), e->fit.axis_in_a);
 }
 
+/* What a pair slid along its line, and how far off it. */
+struct path {
+    uint8_t first; /* keyframe that saw both */
+    float low;     /* positions along the line: between these it is away from both ends */
+    float high;
+    float variance; /* of the positions across */
+};
+
+/* The variance expected counts as much as two keyframes, which a line may take to itself. */
+static struct path path_of(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                           float expected)
+{
+    struct path path = {0, 1e9f, -1e9f, 0.0f};
+    struct grrl_vec2 first = {0.0f, 0.0f};
+    float n = 0.0f;
+    float sum = 0.0f;
+    float sum2 = 2.0f * expected;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        const struct grrl_perception_pose *poses = p->pose[k];
+        if (!grrl_perception_sees_both(p, k, e->a, e->b))
+            continue;
+        struct grrl_vec2 at = grrl_origin_in(&poses[e->a], &poses[e->b]);
+        if (!(n > 0.0f)) {
+            path.first = k;
+            first = at;
+        }
+        float along = grrl_vec2_dot(at, e->fit.axis_in_a);
+        float across = grrl_vec2_cross(e->fit.axis_in_a, grrl_vec2_sub(at, first));
+        path.low = smaller(path.low, along);
+        path.high = larger(path.high, along);
+        sum += across;
+        sum2 += across * across;
+        n += 1.0f;
+    }
+    path.low += END_SHARE * p->config.min_slide_m;
+    path.high -= END_SHARE * p->config.min_slide_m;
+    path.variance = (sum2 - sum * sum / n) / n;
+    return path;
+}
+
 /*
  * How far a pair turned together at most while sliding, in chi squared. Turns at other times do not
  * count: a thing that is carried and then leaves in a straight line turns first and slides
@@ -78,10 +125,9 @@ static float slid(const struct grrl_perception_pose *poses, const struct grrl_jo
  * background, its turn cannot be distinguished from that of the camera.
  */
 static float turn_while_sliding(const struct grrl_perception *p,
-                                const struct grrl_joint_evidence *e)
+                                const struct grrl_joint_evidence *e, const struct path *path)
 {
-    uint8_t ground = background_of(p, e->a, e->b);
-    float least_step = STEP_SHARE * p->config.min_slide_m;
+    uint8_t ground = background_of(p, p->pose[path->first], e->a, e->b);
     float in_picture[2] = {0.0f, 0.0f};
     float on_ground[2] = {0.0f, 0.0f};
     const struct grrl_perception_pose *before = NULL;
@@ -93,7 +139,8 @@ static float turn_while_sliding(const struct grrl_perception *p,
         if (!grrl_perception_sees_both(p, k, e->a, e->b) || !(now[ground].weight > 0.0f))
             continue;
         float at = slid(now, e);
-        if (before != NULL && absolute(at - at_before) > least_step) {
+        float halfway = 0.5f * (at + at_before);
+        if (before != NULL && halfway > path->low && halfway < path->high) {
             struct grrl_pose moved = turn_from(&before[ground].pose, &now[ground].pose);
             float variance = 0.0f;
             float least = GRRL_PI;
@@ -160,6 +207,7 @@ static float evidence_of_returns(const struct grrl_perception *p,
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
                                    const struct grrl_joint_evidence *e, float variance)
 {
-    return smaller(turn_while_sliding(p, e), GRRL_TURN_EVIDENCE_MAX) +
-           evidence_of_returns(p, e, variance);
+    struct path path = path_of(p, e, variance);
+    return smaller(turn_while_sliding(p, e, &path), GRRL_TURN_EVIDENCE_MAX) +
+           evidence_of_returns(p, e, path.variance);
 }

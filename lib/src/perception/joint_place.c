@@ -111,7 +111,7 @@ static bool lies_between(const struct grrl_perception *p, const struct grrl_join
 static bool is_pivot_near(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                           float support)
 {
-    bool table = p->config.static_background;
+    bool table = grrl_perception_on_table(p);
     float gap = table ? p->config.gap_m : 0.0f;
     float share = table ? FAR_ON_TABLE : FAR_BODY;
     float da = distance_to_body(p, e->a, e->fit.in_a);
@@ -143,13 +143,13 @@ static bool is_slide_near(const struct grrl_perception *p, const struct grrl_joi
     float near = p->config.gap_m;
     near += e->fit.upper - e->fit.lower; /* fully extended, they are that much farther apart */
     float far = near;
-    if (support > CERTAIN)
+    if (support > CERTAIN || !grrl_perception_on_table(p))
         far += grrl_joint_half_extent(p, e->a) + grrl_joint_half_extent(p, e->b);
     for (uint8_t k = 0; k < p->n_keyframes; k++) {
         bool both_rest = p->keyframe[k].at_rest && grrl_perception_sees_both(p, k, e->a, e->b);
         float gap = both_rest ? gap_between(p, e->a, e->b, k) : 0.0f;
         if (gap > far ||
-            (gap > near && p->config.static_background && stands_between(p, e->a, e->b, k, gap)))
+            (gap > near && grrl_perception_on_table(p) && stands_between(p, e->a, e->b, k, gap)))
             return false;
     }
     return true;

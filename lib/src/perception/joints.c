@@ -441,7 +441,7 @@ static float untied_cost(const struct grrl_perception *p, const struct motion *m
                          const struct grrl_joint_evidence *e, float free)
 {
     const struct grrl_joint_fit *fit = &e->fit;
-    bool table = p->config.static_background;
+    bool table = grrl_perception_on_table(p);
     float tested;
     if (e->type == GRRL_REVOLUTE)
         tested =
@@ -496,7 +496,7 @@ bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
     collect(p, a, b, &motion);
     e->told = false;
     e->doubt = GRRL_REASON_LITTLE;
-    if (motion.n < 2)
+    if (motion.n < 2 || grrl_apart_never_moved(p, a, b))
         return false;
     fit_revolute(p, &motion, grrl_joint_half_extent(p, a), grrl_joint_half_extent(p, b), &revolute);
     fit_prismatic(p, &motion, &prismatic);

@@ -88,7 +88,8 @@ enum grrl_status grrl_perception_init(struct grrl_perception *perception,
         !positive(config->keyframe_m) || !positive(config->jump_m) || !positive(config->table_m) ||
         !positive(config->min_turn_rad) || !positive(config->min_slide_m) ||
         !positive(config->pivot_scale_m) || !positive(config->gap_m) ||
-        !(grrl_is_finite(config->slack) && config->slack >= 1.0f) || config->min_features < 3)
+        !(grrl_is_finite(config->slack) && config->slack >= 1.0f) || config->min_features < 3 ||
+        (!GRRL_PICTURES && !config->static_background))
         return GRRL_ERR_ARGUMENT;
     memset(perception, 0, sizeof *perception);
     perception->config = *config;
@@ -250,18 +251,29 @@ static void window_take(struct grrl_perception *p, uint16_t slot, struct grrl_ve
     }
 }
 
-/* How many features of the window are farther than `distance` from their place in a keyframe. */
-static unsigned moved_since(const struct grrl_perception *p,
-                            const struct grrl_perception_keyframe *key, float distance)
+/* How many features of the window are farther than `distance` from their place in the latest
+ * keyframe, from `first` on, that saw them. */
+static unsigned moved_since(const struct grrl_perception *p, uint8_t first, float distance)
 {
     unsigned moved = 0;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
-        if (key->weight[i] > 0 && window_mean(p, i, &mean) > 0 &&
-            grrl_vec2_length(grrl_vec2_sub(mean, key->point[i])) > distance)
+        uint8_t k = p->n_keyframes;
+        while (k > first && p->keyframe[k - 1].weight[i] == 0)
+            k--;
+        if (k > first && window_mean(p, i, &mean) > 0 &&
+            grrl_vec2_length(grrl_vec2_sub(mean, p->keyframe[k - 1].point[i])) > distance)
             moved++;
     }
     return moved;
+}
+
+/* Whether enough features have moved to start a keyframe. In pictures, where a link may have hardly
+ * more than that, those that the last keyframe missed count, too. */
+static bool many_have_moved(const struct grrl_perception *p)
+{
+    uint8_t first = grrl_perception_on_table(p) ? (uint8_t)(p->n_keyframes - 1) : 0;
+    return moved_since(p, first, p->config.keyframe_m) >= MOVED_FEATURES;
 }
 
 static bool is_in_a_keyframe(const struct grrl_perception *p, uint16_t slot)
@@ -366,7 +378,7 @@ static bool join_rest(struct grrl_perception *p)
 {
     struct grrl_perception_keyframe *key = &p->keyframe[p->n_keyframes - 1];
     float distance = MOVED_SIGMAS * p->config.noise_m;
-    if (!key->at_rest || moved_since(p, key, distance) > 0)
+    if (!key->at_rest || moved_since(p, (uint8_t)(p->n_keyframes - 1), distance) > 0)
         return false;
     for (uint16_t i = 0; i < p->n_slots; i++) {
         struct grrl_vec2 mean;
@@ -463,10 +475,7 @@ static void observe_push(struct grrl_perception *p, const struct grrl_frame *fra
     }
     window_add(p, frame);
     if (p->window.frames >= (p->config.push_frames > 0 ? p->config.push_frames : PUSH_FRAMES)) {
-        if (p->n_keyframes == 0 ||
-            moved_since(p, &p->keyframe[p->n_keyframes - 1], p->config.keyframe_m) >=
-                MOVED_FEATURES ||
-            many_are_new(p))
+        if (p->n_keyframes == 0 || many_have_moved(p) || many_are_new(p))
             store_window(p, new_keyframe(p), false);
         window_clear(p);
     }

@@ -47,6 +47,17 @@ static inline float grrl_perception_model_error(const struct grrl_perception *p)
     return p->rest_error_m > given ? p->rest_error_m : given;
 }
 
+/* 0: a build for a table before a camera at rest, without the rules for pictures, 2.5 KiB smaller;
+ * grrl_perception_init refuses a configuration without static_background. */
+#ifndef GRRL_PICTURES
+#define GRRL_PICTURES 1
+#endif
+
+static inline bool grrl_perception_on_table(const struct grrl_perception *p)
+{
+    return !GRRL_PICTURES || p->config.static_background;
+}
+
 /* From a body's frame to the world and back; the body may appear larger than its shape. */
 static inline struct grrl_vec2 grrl_to_world(const struct grrl_perception_pose *pose,
                                              struct grrl_vec2 local)
@@ -215,9 +226,10 @@ bool grrl_assign_bodies_may_share(const struct grrl_perception *p, uint8_t a, ui
 uint8_t grrl_assign_best(const struct grrl_perception *p, const struct grrl_assign_origins *origins,
                          uint16_t slot, uint32_t changed);
 
-/* Whether an unassigned feature moves with `body`; both must be visible in at least two keyframes.
- */
-bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body);
+/* Whether a feature of no body, or of another, moves with `body` as well; at least `least`
+ * keyframes must have seen both. */
+bool grrl_assign_follows(const struct grrl_perception *p, uint16_t slot, uint8_t body,
+                         uint16_t least);
 
 /* Whether a feature of a body of n_own features fits some other body as well. */
 bool grrl_assign_fits_elsewhere(const struct grrl_perception *p,
@@ -249,6 +261,10 @@ bool grrl_apart_may_merge(const struct grrl_perception *p, uint8_t a, uint8_t b)
 
 /* Whether two bodies show no relative motion beyond noise. */
 bool grrl_apart_are_still(const struct grrl_perception *p, uint8_t a, uint8_t b);
+
+/* Whether neither of two bodies moved in a recording, which shows all there is to see. If rests are
+ * known there are pushes, and the next one may tell. */
+bool grrl_apart_never_moved(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* Whether two bodies moved so little relative to each other that their boundary is in doubt. */
 bool grrl_apart_is_little(const struct grrl_perception *p, uint8_t a, uint8_t b);
@@ -319,8 +335,9 @@ float grrl_joint_distance_cost(const struct grrl_perception *p,
 float grrl_joint_slide_in_pictures(const struct grrl_perception *p,
                                    const struct grrl_joint_evidence *e, float variance);
 
-/* structure.c: whether a third body turns relative to both bodies about the same pivot. */
-bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
+/* structure.c: whether a third body turns relative to both bodies about the same pivot, or slides
+ * along both while they never moved. */
+bool grrl_structure_move_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b);
 
 /* Fills the model from the bodies and the joints between them. */
 void grrl_structure_update(struct grrl_perception *p);

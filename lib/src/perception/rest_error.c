@@ -71,7 +71,7 @@ float grrl_rest_error(const struct grrl_perception *p)
         }
         last = k;
     }
-    if (n < LEAST_PAIRS || !p->config.static_background)
+    if (n < LEAST_PAIRS || !grrl_perception_on_table(p))
         return 0.0f;
     grrl_perception_sort(surplus, n);
     float found = surplus[n / 2];

@@ -64,7 +64,7 @@ static bool is_same_pin(const struct grrl_joint_evidence *t, const struct grrl_j
     return grrl_vec2_length(d) < reach;
 }
 
-bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b)
+bool grrl_structure_move_as_one(const struct grrl_perception *p, uint8_t a, uint8_t b)
 {
     for (uint8_t c = 0; c < p->n_bodies; c++) {
         struct grrl_joint_evidence ac;
@@ -73,8 +73,10 @@ bool grrl_structure_turn_as_one(const struct grrl_perception *p, uint8_t a, uint
             continue;
         bool near_a = grrl_joints_weigh(p, a < c ? a : c, a < c ? c : a, &ac);
         bool near_b = grrl_joints_weigh(p, b < c ? b : c, b < c ? c : b, &bc);
-        if (ac.told && bc.told && (near_a || near_b) && ac.type == GRRL_REVOLUTE &&
-            bc.type == GRRL_REVOLUTE && is_same_pin(&ac, &bc, PIN_REACH * p->config.gap_m))
+        bool both_told = ac.told && bc.told && (near_a || near_b) && ac.type == bc.type;
+        if (both_told &&
+            (ac.type == GRRL_REVOLUTE ? is_same_pin(&ac, &bc, PIN_REACH * p->config.gap_m)
+                                      : grrl_apart_never_moved(p, a, b)))
             return true;
     }
     return false;
