@@ -389,28 +389,88 @@ static void nearest_first(const struct search *search, uint16_t *feature, unsign
     }
 }
 
-/* Adds a body with these features. */
-static void add_body(struct search *search, const uint16_t *feature, unsigned n)
+/* Whether a body has too few points to tell whether it turns. */
+static bool is_splinter(const struct search *search, uint8_t b)
 {
-    struct grrl_model *model = search->model;
-    uint8_t b = model->n_bodies++;
-    uint16_t number = 0;
-    for (uint8_t i = 0; i < b; i++)
-        number = model->body[i].number > number ? model->body[i].number : number;
-    model->body[b] = (struct grrl_body){.number = (uint16_t)(number + 1)};
-    for (unsigned k = 0; k < n; k++)
-        model->feature_body[feature[k]] = b;
-    search->solid[b] = true;
-    make_piece(search, &search->piece[b], feature, n);
-    search->piece[b].turns = true;
-    search->piece[b].found = true;
+    return b < search->model->n_bodies && !search->solid[b] && search->piece[b].n > 0 &&
+           search->piece[b].n < TURNING_POINTS;
 }
 
-/* A solid that turns so fast that no piece of it looks flat leaves its points in no body. */
+/* The features in no body and in splinters that are seen in most frames. */
+static unsigned loose_features(const struct search *search, uint16_t *feature)
+{
+    const struct grrl_model *model = search->model;
+    unsigned n = 0;
+    for (uint16_t i = 0; i < model->n_features; i++)
+        if (search->frames.mostly[i] && (model->feature_body[i] == GRRL_FEATURE_NONE ||
+                                         is_splinter(search, model->feature_body[i])))
+            feature[n++] = i;
+    return n;
+}
+
+/* Whether one of the splinters among the features is a flat layer that shifts against the others:
+ * a link, not a piece of a solid. */
+static bool has_a_layer(struct search *search, const uint16_t *feature, unsigned n)
+{
+    for (uint8_t b = 0; b < search->model->n_bodies; b++) {
+        struct piece part[2] = {{.n = 0}, {.n = 0}};
+        for (unsigned k = 0; k < n && k < PIECE_POINTS; k++) {
+            struct piece *of = &part[search->model->feature_body[feature[k]] == b ? 0 : 1];
+            of->feature[of->n++] = feature[k];
+        }
+        if (part[0].n < LEAST_POINTS || part[1].n == 0)
+            continue;
+        view(search, &part[0], &part[1]);
+        if (!is_deep(search, &part[0], grrl_fit_near_solid(&search->views)))
+            return true;
+    }
+    return false;
+}
+
+/* A further body of the model. */
+static uint8_t add_body(struct grrl_model *model)
+{
+    uint16_t number = 0;
+    for (uint8_t i = 0; i < model->n_bodies; i++)
+        number = model->body[i].number > number ? model->body[i].number : number;
+    model->body[model->n_bodies] = (struct grrl_body){.number = (uint16_t)(number + 1)};
+    return model->n_bodies++;
+}
+
+/* Makes a solid of these features; the splinters that they leave nearly empty become part of it. */
+static void make_solid(struct search *search, const uint16_t *feature, unsigned n)
+{
+    struct grrl_model *model = search->model;
+    uint8_t solid = GRRL_FEATURE_NONE;
+    uint16_t left[GRRL_MAX_FEATURES];
+    for (unsigned k = 0; k < n; k++)
+        model->feature_body[feature[k]] = GRRL_FEATURE_NONE;
+    for (uint8_t b = 0; b < model->n_bodies; b++) {
+        unsigned rest = features_of(search, b, left);
+        if (!is_splinter(search, b) || rest == search->piece[b].n || rest >= LEAST_POINTS)
+            continue;
+        solid = solid == GRRL_FEATURE_NONE ? b : solid;
+        search->into[b] = solid;
+        search->piece[b].n = 0;
+        for (unsigned k = 0; k < rest; k++)
+            model->feature_body[left[k]] = GRRL_FEATURE_NONE;
+    }
+    if (solid == GRRL_FEATURE_NONE)
+        solid = add_body(model);
+    for (unsigned k = 0; k < n; k++)
+        model->feature_body[feature[k]] = solid;
+    search->solid[solid] = true;
+    make_piece(search, &search->piece[solid], feature, n);
+    search->piece[solid].turns = true;
+    search->piece[solid].found = true;
+}
+
+/* A solid that turns so fast that no large piece of it looks flat leaves its points in splinters
+ * and in no body. */
 static void find_solids(struct search *search)
 {
     uint16_t feature[GRRL_MAX_FEATURES];
-    unsigned n = features_of(search, GRRL_FEATURE_NONE, feature);
+    unsigned n = loose_features(search, feature);
     unsigned seed = 0;
     while (seed < n && n >= LEAST_NEW) {
         uint16_t near[GRRL_MAX_FEATURES];
@@ -420,10 +480,10 @@ static void find_solids(struct search *search)
             search->model->n_bodies == GRRL_MAX_LINKS)
             continue;
         unsigned known = grow(search, near, SEED_POINTS, n);
-        if (known < LEAST_NEW)
+        if (known < LEAST_NEW || has_a_layer(search, near, known))
             continue;
-        add_body(search, near, known);
-        n = features_of(search, GRRL_FEATURE_NONE, feature);
+        make_solid(search, near, known);
+        n = loose_features(search, feature);
         seed = 0;
     }
 }

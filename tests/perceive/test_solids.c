@@ -210,6 +210,68 @@ static void links_stay_apart(void **state)
     check_apart(links_slide_aside, "a slide from aside");
 }
 
+/* A box that turns fast beside a board at rest. */
+static const struct part fast[] = {{0, {-100, -100, -100}, {100, 100, 100}},
+                                   {2, {-300, -200, 0}, {300, 200, 0}}};
+
+static struct pose box_turns_fast(int thing, double t)
+{
+    if (thing == 2)
+        return (struct pose){{0, 0, 1800}, 0.0, {0.0, 0.0}};
+    return (struct pose){{60 * t, 0, 1500}, 1.5 * t, {0.9 * sin(4 * t), 0.9 * t}};
+}
+
+/* Perception finds splinters of the box, or nothing. */
+static void splinters_and_loose_points_become_whole(void **state)
+{
+    (void)state;
+    for (int run = 0; run < 6; run++) {
+        bool splinters = run % 2 == 0;
+        grrl_random_init(&random_numbers, 14, (uint64_t)run);
+        film(fast, 2, box_turns_fast, 0.0);
+        for (int i = 0; i < EACH; i++)
+            model.feature_body[i] = splinters ? (uint8_t)(i / 4) : GRRL_FEATURE_NONE;
+        for (int i = EACH; i < 2 * EACH; i++)
+            model.feature_body[i] = splinters ? 4 : 0;
+        model.n_bodies = splinters ? 5 : 1;
+        chain();
+        assert_true(grrl_solids_join(&tracks, &config, &model, &solids));
+        assert_int_equal(model.n_bodies, 2);
+        assert_int_equal(model.n_joints, 0);
+        assert_true(solids.solid[splinters ? 0 : 1]);
+        assert_false(solids.solid[splinters ? 1 : 0]);
+        int whole = 0;
+        for (int i = 0; i < EACH; i++)
+            whole += model.feature_body[i] == (splinters ? 0 : 1);
+        assert_true(whole > EACH / 2);
+        for (int i = EACH; i < 2 * EACH; i++)
+            assert_int_equal(model.feature_body[i], splinters ? 1 : 0);
+    }
+}
+
+static struct pose links_slide_beside_a_board(int thing, double t)
+{
+    return thing == 2 ? box_turns_fast(2, t) : links_slide_aside(thing, t);
+}
+
+/* With four points each, two links that slide are as little a solid as with many. */
+static void small_links_stay_apart(void **state)
+{
+    (void)state;
+    static const struct part parts[] = {{0, {-200, -30, 0}, {0, 30, 0}},
+                                        {2, {-300, -200, 0}, {300, 200, 0}},
+                                        {1, {0, -30, 0}, {200, 30, 0}}};
+    for (int run = 0; run < 3; run++) {
+        grrl_random_init(&random_numbers, 15, (uint64_t)run);
+        film(parts, 3, links_slide_beside_a_board, 0.0);
+        for (int i = 0; i < model.n_features; i++)
+            if (model.feature_body[i] != 1 && i % EACH >= 4)
+                model.feature_body[i] = GRRL_FEATURE_BACKGROUND;
+        assert_true(grrl_solids_join(&tracks, &config, &model, &solids));
+        assert_int_equal(model.n_bodies, 3);
+    }
+}
+
 /* With too few frames, points or bodies nothing is joined and nothing is read beyond the arrays. */
 static void little_to_go_by(void **state)
 {
@@ -235,6 +297,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(boxes_become_whole),
         cmocka_unit_test(links_stay_apart),
+        cmocka_unit_test(splinters_and_loose_points_become_whole),
+        cmocka_unit_test(small_links_stay_apart),
         cmocka_unit_test(little_to_go_by),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
