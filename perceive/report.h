@@ -18,7 +18,7 @@
 struct grrl_report {
     const struct grrl_model *model;
     const struct grrl_perception *perception; /* that made the model */
-    const struct grrl_solids *solids;         /* which of its bodies were joined afterwards */
+    const struct grrl_solids *solids; /* which of its bodies were joined afterwards; NULL: none */
     const struct grrl_perception_counts *counts;
     const struct grrl_tracks *recording; /* in metres, without what was left out */
     const struct grrl_warnings *warnings;
