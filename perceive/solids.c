@@ -163,8 +163,8 @@ static double f_by(const struct search *search, int model, const struct piece *a
                      parameters_of(search, model, a->n + b->n));
 }
 
-/* Points in no body beside a flat one: they slide along its edges, as tracks do. */
-static bool are_odd(const struct piece *found, const struct piece *other)
+/* Whether points in no body are beside a flat thing: tracks slide along its edges. */
+static bool slides_along(const struct piece *found, const struct piece *other)
 {
     return found->found && !other->turns && other->n >= TURNING_POINTS;
 }
@@ -172,7 +172,8 @@ static bool are_odd(const struct piece *found, const struct piece *other)
 /* F of two pieces as one; HUGE_VAL: they are not one. */
 static double f_of(struct search *search, const struct piece *a, const struct piece *b)
 {
-    if (a->n == 0 || b->n == 0 || !(a->turns || b->turns) || are_odd(a, b) || are_odd(b, a))
+    if (a->n == 0 || b->n == 0 || !(a->turns || b->turns) || slides_along(a, b) ||
+        slides_along(b, a))
         return HUGE_VAL;
     view(search, a, b);
     double f = f_by(search, FLAT, a, b, grrl_fit_flat(&search->views));
@@ -250,14 +251,11 @@ static bool make_pieces(struct search *search, double noise)
     return true;
 }
 
-static void compare_with_others(struct search *search, unsigned a)
+static void compare(struct search *search, unsigned a, unsigned b)
 {
-    for (unsigned b = 0; b < search->model->n_bodies; b++) {
-        unsigned low = a < b ? a : b;
-        unsigned high = a < b ? b : a;
-        search->f[low][high] =
-            a == b ? HUGE_VAL : f_of(search, &search->piece[low], &search->piece[high]);
-    }
+    unsigned low = a < b ? a : b;
+    unsigned high = a < b ? b : a;
+    search->f[low][high] = f_of(search, &search->piece[low], &search->piece[high]);
 }
 
 /* Joins piece b to piece a. */
@@ -274,15 +272,22 @@ static void join(struct search *search, unsigned a, unsigned b)
     search->solid[a] = true;
     for (unsigned i = 0; i < search->model->n_bodies; i++)
         search->into[i] = search->into[i] == b ? (uint8_t)a : search->into[i];
-    compare_with_others(search, b);
-    compare_with_others(search, a);
+    for (unsigned i = 0; i < search->model->n_bodies; i++) {
+        if (i != b)
+            compare(search, b, i); /* no longer a piece */
+        if (i != a)
+            compare(search, a, i);
+    }
 }
 
 static void join_all(struct search *search)
 {
     unsigned n = search->model->n_bodies;
-    for (unsigned a = 0; a < n; a++)
-        compare_with_others(search, a);
+    for (unsigned a = 0; a < n; a++) {
+        search->f[a][a] = HUGE_VAL;
+        for (unsigned b = a + 1; b < n; b++)
+            compare(search, a, b);
+    }
     for (;;) {
         unsigned best_a = 0;
         unsigned best_b = 0;
