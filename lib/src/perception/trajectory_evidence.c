@@ -47,7 +47,7 @@ enum { LEAST_SAMPLES = 12 };
 /* The logarithm of bend over sway. Of the bend's four waves a fitted circle takes up about two, so
  * a hand leaves somewhat more power in the sway; power that falls with the fourth power of the
  * frequency, as that of a smooth curve does, leaves about a sixth there. */
-#define JOINT_SHAPE -0.1f
+#define JOINT_SHAPE (-0.1f)
 #define JOINT_SHAPE_SPREAD 1.1f
 #define NEITHER_SHAPE 1.8f
 #define NEITHER_SHAPE_SPREAD 0.8f
