@@ -230,7 +230,7 @@ static void splinters_and_loose_points_become_whole(void **state)
         grrl_random_init(&random_numbers, 14, (uint64_t)run);
         film(fast, 2, box_turns_fast, 0.0);
         for (int i = 0; i < EACH; i++)
-            model.feature_body[i] = splinters ? (uint8_t)(i / 4) : GRRL_FEATURE_NONE;
+            model.feature_body[i] = (uint8_t)(splinters ? i / 4 : GRRL_FEATURE_NONE);
         for (int i = EACH; i < 2 * EACH; i++)
             model.feature_body[i] = splinters ? 4 : 0;
         model.n_bodies = splinters ? 5 : 1;
