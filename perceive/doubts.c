@@ -200,16 +200,16 @@ void grrl_doubt_losses(const struct grrl_report *report, struct grrl_warnings *w
     if (percent >= 100.0 / 3.0)
         grrl_warn(warnings, "%.0f%% of the points are not used: see the dropped points", percent);
     for (unsigned b = 0; b < report->model->n_bodies; b++) {
-        const struct grrl_solids *solids = report->solids;
-        double change = solids->solid[b] ? 0.0
-                                         : (double)grrl_perception_size_change(report->perception,
-                                                                               solids->origin[b]);
-        if (solids->solid[b])
+        if (grrl_report_is_solid(report, b)) {
             grrl_warn(warnings,
                       "f%u is a solid that turns out of the image plane or comes near: how it is "
                       "joined to others cannot be told",
                       (unsigned)report->model->body[b].number);
-        else if (change > SIZE_CHANGE)
+            continue;
+        }
+        double change =
+            (double)grrl_perception_size_change(report->perception, grrl_report_origin(report, b));
+        if (change > SIZE_CHANGE)
             grrl_warn(warnings,
                       "the size of f%u changes by %.0f%%: not a plane seen from above at a "
                       "constant distance; bodies and joints are doubtful",

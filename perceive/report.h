@@ -33,6 +33,18 @@ struct grrl_report {
     bool y_down;        /* as in images */
 };
 
+/* Whether a body is a solid that turns out of the plane of the image. */
+static inline bool grrl_report_is_solid(const struct grrl_report *report, unsigned body)
+{
+    return report->solids != NULL && report->solids->solid[body];
+}
+
+/* The index of a body in the perception that made the model. */
+static inline uint8_t grrl_report_origin(const struct grrl_report *report, unsigned body)
+{
+    return report->solids != NULL ? report->solids->origin[body] : (uint8_t)body;
+}
+
 /* The relation of bodies a and b in one word; *pair has the probabilities. */
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair);

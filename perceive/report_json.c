@@ -27,7 +27,7 @@ static void print_body(FILE *file, const struct grrl_report *report, unsigned i)
                   (unsigned)body->number, (double)body->centroid_m.x * scale,
                   (double)body->centroid_m.y * scale, (double)body->length_m * scale,
                   (double)body->width_m * scale, (double)body->axis.x, (double)body->axis.y,
-                  report->solids != NULL && report->solids->solid[i] ? "true" : "false");
+                  grrl_report_is_solid(report, i) ? "true" : "false");
     print_ids(file, report->model, i);
     (void)fputc('}', file);
 }

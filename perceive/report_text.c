@@ -74,12 +74,10 @@ static void print_joint(FILE *file, const struct grrl_report *report,
 const char *grrl_report_relation(const struct grrl_report *report, unsigned a, unsigned b,
                                  struct grrl_pair *pair)
 {
-    const struct grrl_solids *solids = report->solids;
     const float third = 1.0f / 3.0f;
-    bool solid = solids != NULL && (solids->solid[a] || solids->solid[b]);
-    uint8_t of_a = solids != NULL ? solids->origin[a] : (uint8_t)a;
-    uint8_t of_b = solids != NULL ? solids->origin[b] : (uint8_t)b;
-    if (solid || grrl_perception_pair(report->perception, of_a, of_b, pair) != GRRL_OK)
+    if (grrl_report_is_solid(report, a) || grrl_report_is_solid(report, b) ||
+        grrl_perception_pair(report->perception, grrl_report_origin(report, a),
+                             grrl_report_origin(report, b), pair) != GRRL_OK)
         *pair = (struct grrl_pair){.relation = GRRL_RELATION_UNDETERMINED,
                                    .reason = GRRL_REASON_SIZES,
                                    .p_revolute = third,

@@ -171,20 +171,6 @@ static enum grrl_status print_term(struct grrl_run *run, const struct grrl_model
                              : status;
 }
 
-/* Only a camera sees solids; a tracker above a table sees a plane. */
-static bool join_solids(struct grrl_run *run, const struct grrl_tracks *tracks)
-{
-    const struct grrl_perception_config *config = &run->perception.config;
-    run->joined = *grrl_perception_model(&run->perception);
-    if (!config->static_background)
-        return grrl_solids_join(tracks, config, &run->joined, &run->solids);
-    for (uint8_t b = 0; b < run->joined.n_bodies; b++) {
-        run->solids.origin[b] = b;
-        run->solids.solid[b] = false;
-    }
-    return true;
-}
-
 static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale,
                                    const struct grrl_run_config *config,
                                    const struct grrl_tracks *tracks, const char *profile)
@@ -193,7 +179,9 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     const struct grrl_model *model = &run->joined;
     double per_metre = 1.0 / (double)scale.metres;
     float noise_m;
-    if (!join_solids(run, tracks))
+    bool solids = !perception->config.static_background; /* above a table all is flat */
+    run->joined = *grrl_perception_model(perception);
+    if (solids && !grrl_solids_join(tracks, &perception->config, &run->joined, &run->solids))
         return GRRL_RUN_OUT_OF_MEMORY;
     run->status = print_term(run, model);
     if (run->status != GRRL_OK)
@@ -201,7 +189,7 @@ static enum grrl_run_result report(struct grrl_run *run, struct grrl_scale scale
     run->upright =
         (struct grrl_report){.model = model,
                              .perception = perception,
-                             .solids = &run->solids,
+                             .solids = solids ? &run->solids : NULL,
                              .counts = &perception->counts,
                              .recording = tracks,
                              .warnings = &run->warnings,

@@ -5,9 +5,10 @@
  * squared residuals for each further parameter, over the variance of the noise: about 1 for two
  * pieces of one thing, tens or hundreds for two things. The pair with the least F is joined first.
  *
- * Two guards keep apart what flat things explain as well. A piece must move as no flat rigid thing
- * does, or there is nothing to explain. And its depth must show within the pieces: two flat layers
+ * Three guards keep apart what flat things explain as well. A piece must move as no flat rigid
+ * thing does, or there is nothing to explain. Depth must show within the pieces: two flat layers
  * that shift against each other may be one solid seen by a moving camera, or two things that slide.
+ * And points in no body beside a flat thing are tracks that slide along its edges.
  */
 #include "solids.h"
 
@@ -40,6 +41,9 @@
 /* A flat rigid model is good enough up to this share of the squared model error of perception. */
 #define GOOD_ENOUGH 0.16
 
+/* A point belongs to a solid if its variance is up to this many times that of the noise. */
+#define MOST_VARIANCE 2.5
+
 enum {
     PIECE_POINTS = GRRL_VIEWS_POINTS / 2, /* of a piece, evenly chosen */
     LEAST_FRAMES = 6,
@@ -49,9 +53,6 @@ enum {
     SEED_POINTS = 6,    /* neighbours in no body that may be a solid */
     LEAST_NEW = 8       /* points of a solid that perception has not found */
 };
-
-/* A point belongs to a solid if its variance is up to this many times that of the noise. */
-#define MOST_VARIANCE 2.5
 
 /* Models of a thing that may turn out of the plane of the image, from simple to general. */
 enum { FLAT, SOLID, NEAR_SOLID, MODELS };
@@ -216,13 +217,18 @@ static bool measure_noise(struct search *search, double most)
 
 /* --- pieces ----------------------------------------------------------------------------------- */
 
-/* Makes a piece of evenly chosen features and fits it. */
-static void make_piece(struct search *search, struct piece *piece, const uint16_t *feature,
-                       unsigned n)
+/* Evenly chosen features, as many as a piece may have. */
+static void choose(struct piece *piece, const uint16_t *feature, unsigned n)
 {
     piece->n = n < PIECE_POINTS ? n : PIECE_POINTS;
     for (unsigned k = 0; k < piece->n; k++)
         piece->feature[k] = feature[k * n / piece->n];
+}
+
+static void make_piece(struct search *search, struct piece *piece, const uint16_t *feature,
+                       unsigned n)
+{
+    choose(piece, feature, n);
     fit_piece(search, piece);
 }
 
@@ -312,12 +318,11 @@ static void join_all(struct search *search)
 static unsigned find_members(struct search *search, uint16_t *feature, unsigned known, unsigned n)
 {
     double variance[GRRL_VIEWS_POINTS];
-    struct piece first = {.n = known < PIECE_POINTS ? known : PIECE_POINTS};
+    struct piece first;
     struct piece rest = {.n = n - known < PIECE_POINTS ? n - known : PIECE_POINTS};
     double most = MOST_VARIANCE * search->variance;
     double least = HUGE_VAL;
-    for (unsigned k = 0; k < first.n; k++)
-        first.feature[k] = feature[k * known / first.n];
+    choose(&first, feature, known);
     memcpy(rest.feature, feature + known, rest.n * sizeof feature[0]);
     view(search, &first, &rest);
     grrl_fit_further_points(&search->views, first.n, variance);
@@ -340,9 +345,8 @@ static unsigned find_members(struct search *search, uint16_t *feature, unsigned 
 /* Whether the first features are one solid. */
 static bool is_solid(struct search *search, const uint16_t *feature, unsigned n, int model)
 {
-    struct piece piece = {.n = n < PIECE_POINTS ? n : PIECE_POINTS};
-    for (unsigned k = 0; k < piece.n; k++)
-        piece.feature[k] = feature[k * n / piece.n];
+    struct piece piece;
+    choose(&piece, feature, n);
     view(search, &piece, NULL);
     double freedom = freedom_of(search, parameters_of(search, model, piece.n));
     return freedom > 0.0 &&

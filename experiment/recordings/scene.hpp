@@ -81,8 +81,8 @@ struct Joint {
 struct Placed {
     grrl_sim::Pose pose;
     double scale = 1.0;
-    double pitch_rad = 0.0; /* about the body's x axis, after */
-    double yaw_rad = 0.0;   /* about its y axis */
+    double pitch_rad = 0.0; /* first about the body's x axis, */
+    double yaw_rad = 0.0;   /* then about its y axis, then the pose */
 };
 
 /* A place on the table and the height above it. */

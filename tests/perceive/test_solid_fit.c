@@ -8,9 +8,8 @@
 
 #include <cmocka.h>
 
+#include "draw.h"
 #include "solid_fit.h"
-
-#include "grrl/base/random.h"
 
 /* How a thing moves and how it is seen. */
 enum motion { SLIDES_AND_TURNS, TURNS_OUT, FLAT_TURNS_OUT, COMES_NEAR };
@@ -29,21 +28,7 @@ static const struct {
 static const int simplest[] = {
     [SLIDES_AND_TURNS] = 0, [FLAT_TURNS_OUT] = 1, [TURNS_OUT] = 2, [COMES_NEAR] = 3};
 
-static struct grrl_random random_numbers;
 static struct grrl_views views;
-
-static double uniform(double low, double high)
-{
-    return low + (high - low) * (double)grrl_random_uniform(&random_numbers);
-}
-
-static double normal(void)
-{
-    double sum = -6.0;
-    for (int i = 0; i < 12; i++)
-        sum += uniform(0.0, 1.0);
-    return sum;
-}
 
 /* Points within a cube of 100, or its middle plane, seen from 100,000 away, or from 400. */
 static void record(enum motion motion, double noise, double missing)

@@ -10,9 +10,8 @@
 
 #include <cmocka.h>
 
+#include "draw.h"
 #include "solids.h"
-
-#include "grrl/base/random.h"
 
 enum { FRAMES = 60, MOST = 5, EACH = 16 };
 
@@ -30,7 +29,6 @@ struct pose {
     double out[2]; /* and out of it */
 };
 
-static struct grrl_random random_numbers;
 static struct grrl_model model;
 static struct grrl_solids solids;
 static struct grrl_perception_config config;
@@ -39,19 +37,6 @@ static float xs[FRAMES * MOST * EACH];
 static float ys[FRAMES * MOST * EACH];
 static struct grrl_tracks_frame frames[FRAMES];
 static struct grrl_tracks tracks;
-
-static double uniform(double low, double high)
-{
-    return low + (high - low) * (double)grrl_random_uniform(&random_numbers);
-}
-
-static double noise(void)
-{
-    double sum = -6.0;
-    for (int i = 0; i < 12; i++)
-        sum += uniform(0.0, 1.0);
-    return 0.4 * sum;
-}
 
 /* Where a camera with a focal length of 800 pixels sees a point. */
 static void see(const struct pose *pose, const double *p, double *x, double *y)
@@ -88,8 +73,8 @@ static void film(const struct part *part, int n, struct pose (*pose_of)(int thin
             struct pose pose = pose_of(part[i / EACH].thing, (double)f / (FRAMES - 1));
             double x, y;
             see(&pose, point[i], &x, &y);
-            xs[at] = (float)(1e-3 * (x + noise()));
-            ys[at] = (float)(1e-3 * (y + noise()));
+            xs[at] = (float)(1e-3 * (x + 0.4 * normal()));
+            ys[at] = (float)(1e-3 * (y + 0.4 * normal()));
             ids[at] = model.feature_id[i];
             model.feature_m[i] = (struct grrl_vec2){xs[at], ys[at]};
             if (uniform(0.0, 1.0) >= missing) {
