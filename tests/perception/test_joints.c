@@ -1,5 +1,5 @@
 /* The evidence for a joint, against the definitions in double precision: normal equations solved as
- * they stand, distances sorted, extremes listed. */
+ * they stand, extremes listed. */
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,16 +8,7 @@
 
 #include <cmocka.h>
 
-#include "scene.h"
-
-/* How near a decision of the slow way was to the other side, relative: then rounding decides. */
-static double doubt;
-
-static bool above(double a, double b)
-{
-    doubt = fmin(doubt, fabs(a - b) / fmax(fmax(fabs(a), fabs(b)), 1e-9));
-    return a > b;
-}
+#include "slow_near.h"
 
 struct slow_relative {
     struct placed r; /* b in a */
@@ -77,19 +68,6 @@ static double turn_variance(const struct slow_relative *r)
     return single / r->ia + single / r->ib + bend_a * r->wa / r->ia + bend_b * r->wb / r->ib;
 }
 
-struct slow_fit {
-    double excess;
-    bool excited;
-    double lower;
-    double upper;
-    struct point in_a;
-    struct point in_b;
-    struct point axis;
-    double point_variance;
-    double axis_variance;
-    bool determined; /* well enough for single precision */
-};
-
 /* Solves n equations, the right side in column n; the matrix is symmetric and positive. */
 static void solve(int n, double m[4][5], double *x)
 {
@@ -120,15 +98,6 @@ static void pivot_equations(double sa, double sb, double lever_a2, double lever_
     }
     for (int r = 0; r < 4; r++)
         m[r][r] += r < 2 ? 1.0 / (sa * sa) : 1.0 / (sb * sb);
-}
-
-static double slow_half_extent(int body)
-{
-    double far2 = 0.0;
-    for (int i = 0; i < scene.n_slots; i++)
-        if (scene.body_of[i] == body)
-            far2 = fmax(far2, square(point_of(scene.shape[i])));
-    return sqrt(far2);
 }
 
 static struct slow_fit slow_revolute(int a, int b)
@@ -264,99 +233,6 @@ static double slow_free_cost(void)
         cost += fmin(rigid, 14.0);
     }
     return fmin(cost, 140.0);
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a;
-    double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* To the third nearest feature of a body. */
-static double slow_distance(int body, struct point local)
-{
-    double distance[GRRL_MAX_FEATURES];
-    int n = 0;
-    for (int i = 0; i < scene.n_slots; i++)
-        if (scene.body_of[i] == body)
-            distance[n++] = sqrt(square(minus(point_of(scene.shape[i]), local)));
-    qsort(distance, (size_t)n, sizeof distance[0], by_size);
-    return n >= 3 ? distance[2] : sqrt(1e9);
-}
-
-static double slow_gap(int a, int b, int k)
-{
-    double best = 1e9;
-    for (int i = 0; i < scene.n_slots; i++) {
-        struct point world = to_world(placed_of(scene.pose[k][b].pose), point_of(scene.shape[i]));
-        if (scene.body_of[i] == b)
-            best = fmin(best, slow_distance(a, to_local(placed_of(scene.pose[k][a].pose), world)));
-    }
-    return best;
-}
-
-/* From its middle to its farthest feature. */
-static double slow_reach(int body)
-{
-    double far = 0.0;
-    for (int i = 0; i < scene.n_slots; i++)
-        if (scene.body_of[i] == body)
-            far = fmax(far, sqrt(square(point_of(scene.shape[i]))));
-    return far;
-}
-
-/* Whether a further body lies nearer to the pivot than `far` when a was seen last. */
-static bool slow_lies_between(int a, int b, struct point in_a, double far)
-{
-    int last = -1;
-    bool nearer = false;
-    for (int k = 0; k < scene.n_keyframes; k++)
-        last = scene.pose[k][a].weight > 0.0f ? k : last;
-    for (int c = 0; c < scene.n_bodies; c++) {
-        if (c == a || c == b || !(scene.pose[last][c].weight > 0.0f))
-            continue;
-        struct point pivot = to_world(placed_of(scene.pose[last][a].pose), in_a);
-        double away = slow_distance(c, to_local(placed_of(scene.pose[last][c].pose), pivot));
-        nearer = above(far, away) || nearer;
-    }
-    return nearer;
-}
-
-/* Whether a further body is closer to both than `far` in keyframe k. */
-static bool slow_stands_between(int a, int b, int k, double far)
-{
-    bool stands = false;
-    for (int c = 0; c < scene.n_bodies; c++)
-        if (c != a && c != b && scene.pose[k][c].weight > 0.0f)
-            stands = (above(far, slow_gap(a, c, k)) && above(far, slow_gap(b, c, k))) || stands;
-    return stands;
-}
-
-static bool slow_is_near(int a, int b, bool revolute, const struct slow_fit *fit, double support)
-{
-    double gap = (double)scene.config.gap_m;
-    if (revolute) {
-        double da = slow_distance(a, fit->in_a);
-        double db = slow_distance(b, fit->in_b);
-        bool near = !above(fmax(da, db), gap);
-        bool certain = above(support, 30.0);
-        bool reached =
-            !above(da, gap + 1.5 * slow_reach(a)) && !above(db, gap + 1.5 * slow_reach(b));
-        return near || (certain && reached && !slow_lies_between(a, b, fit->in_a, fmax(da, db)));
-    }
-    bool near = true;
-    double far = above(support, 30.0) ? slow_reach(a) + slow_reach(b) : 0.0;
-    gap += fit->upper - fit->lower;
-    for (int k = 0; k < scene.n_keyframes; k++) {
-        bool both = scene.pose[k][a].weight > 0.0f && scene.pose[k][b].weight > 0.0f;
-        if (both && scene.keyframe[k].at_rest) {
-            double d = slow_gap(a, b, k);
-            bool reached = !above(d, gap + far);
-            near = (!above(d, gap) || (reached && !slow_stands_between(a, b, k, d))) && near;
-        }
-    }
-    return near;
 }
 
 /* What is left of half the squared turn after the best line through it, times the lever. */
