@@ -21,9 +21,10 @@ struct grrl_solids {
 };
 
 /*
- * Joins the pieces of solids. Joints of a solid are dropped: pivots and slides in the plane of the
- * image do not describe how it moves. tracks: the recording that the model is of, in metres;
- * config: that of its perception. false: memory is short. Cost: some 10 ms for each pair of pieces.
+ * Joins the pieces of solids, and makes bodies of points in none that are one. Joints of a solid
+ * are dropped: pivots and slides in the plane of the image do not describe how it moves. tracks:
+ * the recording that the model is of, in metres; config: that of its perception. false: memory is
+ * short. Cost: some 10 ms for each pair of pieces.
  */
 bool grrl_solids_join(const struct grrl_tracks *tracks, const struct grrl_perception_config *config,
                       struct grrl_model *model, struct grrl_solids *solids);
