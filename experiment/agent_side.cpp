@@ -44,7 +44,47 @@ void must(grrl_status status, const char *what)
         throw std::runtime_error(std::string(what) + ": " + grrl_status_text(status));
 }
 
+/* A policy of the library. */
+grrl_policy make_policy(const Policy &policy, PolicyMemory &memory, grrl_learner_config &learner)
+{
+    alignas(std::max_align_t) unsigned char config[GRRL_POLICY_CONFIG_BYTES];
+    if (policy.type->config_default != nullptr)
+        policy.type->config_default(config);
+    if (policy.configure)
+        policy.configure(learner, config);
+    size_t bytes = policy.type->bytes(policy.capacity);
+    memory.resize(bytes / sizeof(std::max_align_t) + 1);
+    grrl_policy made{};
+    must(grrl_policy_make(policy.type, memory.data(), bytes, policy.capacity,
+                          policy.type->config_default != nullptr ? config : nullptr, &made),
+         "the policy cannot start");
+    return made;
+}
+
+grrl_status load(grrl_learner &learner, const Bytes &experience)
+{
+    Reader reader{&experience, 0};
+    grrl_io io{};
+    io.context = &reader;
+    io.read = read_bytes;
+    return grrl_learner_load(&learner, &io);
+}
+
 } // namespace
+
+std::string objection(const Policy &policy, const Bytes &experience)
+{
+    auto learner = std::make_unique<grrl_learner>();
+    PolicyMemory memory;
+    grrl_learner_config config{};
+    grrl_learner_config_default(&config);
+    grrl_policy made = make_policy(policy, memory, config);
+    must(grrl_learner_init(learner.get(), &config, made), "the learner cannot start");
+    grrl_status status = load(*learner, experience);
+    if (status == GRRL_ERR_IO)
+        return "it ends early";
+    return status == GRRL_OK ? "" : grrl_status_text(status);
+}
 
 int64_t AgentSide::now_us(void *context)
 {
@@ -58,7 +98,12 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
 {
     grrl_agent_config config{};
     grrl_learner_config_default(&config.learner);
-    config.policy = make_policy(phase, node, config.learner);
+    if (phase.policy->make_chooser) {
+        chooser_ = phase.policy->make_chooser(node, phase.seed);
+        config.policy = policy_of(*chooser_);
+    } else {
+        config.policy = make_policy(*phase.policy, memory_, config.learner);
+    }
     config.learner.seed = phase.seed;
     config.learner.perception.noise_m =
         std::max(least_noise_m, static_cast<float>(phase.world.tracker.noise_sigma_m));
@@ -66,35 +111,8 @@ AgentSide::AgentSide(lcm_t *lcm, const Phase &phase, Clock clock, const grrl_sim
     config.now_us = now_us;
     config.context = this;
     must(grrl_agent_init(agent_.get(), &config, lcm), "the agent cannot start");
-    if (experience.empty())
-        return;
-    Reader reader{&experience, 0};
-    grrl_io io{};
-    io.context = &reader;
-    io.read = read_bytes;
-    must(grrl_learner_load(&agent_->learner, &io), "cannot load the experience");
-}
-
-grrl_policy AgentSide::make_policy(const Phase &phase, const grrl_sim::Node *node,
-                                   grrl_learner_config &learner)
-{
-    const Policy &policy = *phase.policy;
-    if (policy.make_chooser) {
-        chooser_ = policy.make_chooser(node, phase.seed);
-        return policy_of(*chooser_);
-    }
-    alignas(std::max_align_t) unsigned char config[GRRL_POLICY_CONFIG_BYTES];
-    if (policy.type->config_default != nullptr)
-        policy.type->config_default(config);
-    if (policy.configure)
-        policy.configure(learner, config);
-    size_t bytes = policy.type->bytes(policy.capacity);
-    memory_.resize(bytes / sizeof(std::max_align_t) + 1);
-    grrl_policy made{};
-    must(grrl_policy_make(policy.type, memory_.data(), bytes, policy.capacity,
-                          policy.type->config_default != nullptr ? config : nullptr, &made),
-         "the policy cannot start");
-    return made;
+    if (!experience.empty())
+        must(load(agent_->learner, experience), "cannot load the experience");
 }
 
 AgentSide::~AgentSide()

@@ -115,6 +115,8 @@ void Folder::take(const std::string &other) const
 std::string Folder::experiment_path(const Curve &curve, uint64_t seed) const
 {
     std::string key = curve.course.key + "\n" + std::to_string(curve.trials()) + "\n";
+    if (curve.experience)
+        key += hash_of({curve.experience->begin(), curve.experience->end()}) + "\n";
     for (const Course &before : curve.before)
         key += before.key + "\n" + std::to_string(before.trials) + "\n";
     return path("experiments/" + curve.policy->name + "-" + hash_of(key) + "-" +

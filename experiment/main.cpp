@@ -27,7 +27,7 @@ struct Task {
     uint64_t seed; /* of the experiment */
 };
 
-/* In a worker: runs one experiment, from an empty memory to its file. */
+/* In a worker: runs one experiment, from its first memory to its file. */
 void experiment(const Options &options, const Curve &curve, const Task &task, const Folder &folder,
                 const Report &report)
 {
@@ -35,7 +35,7 @@ void experiment(const Options &options, const Curve &curve, const Task &task, co
     phase.policy = curve.policy;
     phase.cap = options.cap;
     phase.world = curve.conditions.world;
-    Bytes experience;
+    Bytes experience = curve.experience ? *curve.experience : Bytes{};
     uint64_t seed = task.seed;
     for (const Course &course : curve.before) {
         phase.objects = course.objects;

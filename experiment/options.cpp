@@ -270,6 +270,8 @@ std::string shared_arguments(const Options &options)
     text << "--trials\n" << options.trials << "\n--experiments\n" << options.experiments;
     text << "\n--seed\n" << options.first_seed << ".." << options.last_seed;
     text << "\n--cap\n" << options.cap << "\n--noise\n" << options.noise_mm << "\n";
+    if (!options.start.empty())
+        text << "--start\n" << options.start << "\n";
     if (!options.figure.empty())
         text << "--figure\n" << options.figure << "\n";
     const std::pair<const char *, const std::vector<std::string> *> lists[] = {
@@ -304,6 +306,10 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                          "with --object: compare with pretraining, N trials on another one;\n"
                          "several add up, in their order",
                          take_pretrain, &o.pretrain),
+        grrl_option_text("start", "FILE",
+                         "learners start with this store, not with an empty memory; mixed: the\n"
+                         "one that comes with grrl",
+                         &o.start),
         grrl_option_each("stream", "FILE[:N]", "as --object FILE, or as --pretrain FILE:N",
                          take_stream, &o),
         grrl_option_each("then", "OBJECT", "after --stream FILE:N: as --object", take_object,

@@ -16,6 +16,7 @@ namespace grrl_experiment
 struct Options {
     std::vector<std::string> objects;     /* or streams of objects, *.stream */
     std::vector<std::string> pretrain;    /* OBJECT:N, one after the other */
+    std::string start;                    /* a store that all learners start with; or empty */
     std::vector<const Policy *> policies; /* empty: those of the figure, or learn */
     int trials = 50;
     int experiments = 20;

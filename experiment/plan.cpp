@@ -1,10 +1,14 @@
 /* plan.cpp: determines the curves for a figure or a command line. */
 #include "plan.hpp"
 
+#include <climits>
+#include <map>
+
 #include "files.hpp"
 #include "object_folder.hpp"
 #include "object_stream.hpp"
 #include "options.hpp"
+#include "shipped_store.h"
 
 namespace grrl_experiment
 {
@@ -86,6 +90,30 @@ std::string read_course(Course &course, const Conditions &conditions)
     if (!object)
         return course.text + ": " + object.error;
     course.objects = [only = *object.value](uint64_t, int32_t) { return only; };
+    return {};
+}
+
+/* Gives all learners what the store holds, and returns what is wrong with it. */
+std::string read_start(Plan &plan, const std::string &store)
+{
+    char path[PATH_MAX];
+    grrl_shipped_store_path(store.c_str(), sizeof path, path);
+    std::optional<std::string> text = read_file(path);
+    if (!text)
+        return "--start: " + std::string(path) + " cannot be read";
+    auto bytes = std::make_shared<const Bytes>(text->begin(), text->end());
+    std::map<const Policy *, std::string> objections;
+    for (Curve &curve : plan.curves) {
+        if (!curve.policy->learns())
+            continue;
+        if (objections.count(curve.policy) == 0)
+            objections[curve.policy] = objection(*curve.policy, *bytes);
+        if (!objections[curve.policy].empty())
+            return "--start: " + curve.policy->name + " cannot start with " + path + ": " +
+                   objections[curve.policy];
+        curve.start = store;
+        curve.experience = bytes;
+    }
     return {};
 }
 
@@ -255,7 +283,7 @@ std::string Curve::object() const
 
 std::string Curve::pretrain_text() const
 {
-    std::string text;
+    std::string text = start;
     for (const Course &earlier : before)
         text += (text.empty() ? "" : ", ") + earlier.text + ":" + std::to_string(earlier.trials);
     return text.empty() ? "none" : text;
@@ -298,6 +326,8 @@ grrl_sim::Result<Plan> make_plan(const Options &options)
         if (options.figure == figure.name || options.figure == "all")
             add_figure(plan, options, figure);
     std::string error = read_objects(plan);
+    if (error.empty() && !options.start.empty())
+        error = read_start(plan, options.start);
     return error.empty() ? grrl_sim::Result<Plan>::good(std::move(plan))
                          : grrl_sim::Result<Plan>::bad(error);
 }

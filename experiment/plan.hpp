@@ -2,6 +2,7 @@
 #ifndef GRRL_EXPERIMENT_PLAN_HPP
 #define GRRL_EXPERIMENT_PLAN_HPP
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,13 +33,15 @@ struct Course {
 struct Curve {
     Course course;
     const Policy *policy = nullptr;
-    std::vector<Course> before; /* one after the other; empty: none */
-    Conditions conditions;      /* of all its courses */
+    std::string start; /* a store, as given by the user; empty: an empty memory */
+    std::shared_ptr<const Bytes> experience; /* of that store */
+    std::vector<Course> before;              /* one after the other; empty: none */
+    Conditions conditions;                   /* of all its courses */
 
     std::string object() const; /* RPRPRPR, or RPRPRPR in links=0.7 */
     int trials() const { return course.trials; }
     int all_trials() const;            /* with those before */
-    std::string pretrain_text() const; /* RRRRR:50, or RRRRR:50, PRPRP:20, or none */
+    std::string pretrain_text() const; /* mixed, RRRRR:50, PRPRP:20, or none */
 };
 
 struct Figure {

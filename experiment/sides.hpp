@@ -22,6 +22,7 @@ namespace grrl_experiment
 {
 
 using Bytes = std::vector<uint8_t>; /* as grrl_learner_save writes them */
+using PolicyMemory = std::vector<std::max_align_t>;
 using Clock = std::function<int64_t()>;
 
 struct TrialRow {
@@ -44,6 +45,9 @@ struct Phase {
     grrl_sim::WorldParams world; /* the agent knows the noise of a tracked point */
 };
 
+/* Why a policy cannot continue from this experience, or an empty text. */
+std::string objection(const Policy &policy, const Bytes &experience);
+
 /* The agent's core and its policy. */
 class AgentSide
 {
@@ -61,13 +65,11 @@ public:
 
 private:
     static int64_t now_us(void *context);
-    grrl_policy make_policy(const Phase &phase, const grrl_sim::Node *node,
-                            grrl_learner_config &learner);
 
     Clock clock_;
     std::unique_ptr<Chooser> chooser_;
     bool learns_;
-    std::vector<std::max_align_t> memory_; /* for the policy */
+    PolicyMemory memory_;
     std::unique_ptr<grrl_agent> agent_;
 };
 

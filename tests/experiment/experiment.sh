@@ -133,6 +133,30 @@ added) # what one command does, others may do after one another
     ! cmp -s <(grep 'R:2' two/trials.csv | cut -d, -f4-) <(grep 'R:2' one/trials.csv | cut -d, -f3-) ||
         fail "the second one changes nothing"
     ;;
+start) # learners start with a store
+    few=(--object PR --policy "random,learn" --trials 2 --experiments 2)
+    run empty "${few[@]}"
+    run mixed "${few[@]}" --start mixed --pretrain RR:1
+    grep -q '^PR,learn,mixed,2,1002,2,' mixed/trials.csv || fail "no curve from the store"
+    grep -q '^PR,learn,"mixed, RR:1",2,1002,2,' mixed/trials.csv || fail "no pretraining after it"
+    cmp <(grep random empty/trials.csv) <(grep random mixed/trials.csv) || fail "random differs"
+    ! cmp -s <(grep learn empty/trials.csv | cut -d, -f4-) \
+        <(grep 'learn,mixed,' mixed/trials.csv | cut -d, -f4-) || fail "the store changes nothing"
+    store=$(echo empty/experiments/learn-*-1001.store)
+    run own "${few[@]}" --start "$store"
+    cp -r own same
+    run same "${few[@]}" --start "$store"
+    grep -q '4 of 4 experiments are already done' output.txt || fail "the same store is not known"
+    run same "${few[@]}" --start "$(echo empty/experiments/learn-*-1002.store)"
+    grep -q '2 of 4 experiments are already done' output.txt || fail "another store is not told apart"
+    refused 'paper cannot start with .*mixed.store: a file from another policy' \
+        --object PR --out x --start mixed --policy learn,paper
+    refused '--start: no.store cannot be read' --object PR --out x --start no.store
+    head -c 200 "$store" >torn.store
+    refused 'cannot start with torn.store: it ends early' \
+        --object PR --out x --start torn.store
+    [ ! -e x ] || fail "a folder was made all the same"
+    ;;
 worlds)
     options=(--policy "random,rules,learn" --trials 2 --experiments 2)
     run one --object RR --world default --world features=0.7,noise=1 --world size=0.5 "${options[@]}"
