@@ -67,21 +67,34 @@ static double slow_gap(int a, int b, int k)
     return best;
 }
 
-/* Whether a further body lies nearer to the pivot than `far` when a was seen last. */
+/* Whether body c holds the pivot: it lies nearer than `far` when both were seen last, and the pivot
+ * stayed within a link's width there, unless it is far away from everything. */
+static bool slow_holds(int c, int a, struct point in_a, double far)
+{
+    struct point at[GRRL_MAX_KEYFRAMES];
+    double gap = (double)scene.config.gap_m;
+    double strayed = 0.0;
+    int n = 0;
+    for (int k = 0; k < scene.n_keyframes; k++) {
+        if (!(scene.pose[k][a].weight > 0.0f) || !(scene.pose[k][c].weight > 0.0f))
+            continue;
+        struct point pivot = to_world(placed_of(scene.pose[k][a].pose), in_a);
+        at[n] = to_local(placed_of(scene.pose[k][c].pose), pivot);
+        strayed = fmax(strayed, sqrt(square(minus(at[n], at[0]))));
+        n++;
+    }
+    if (n == 0)
+        return false;
+    bool passes_by = above(strayed, 0.2 * gap) && !above(far, 1.5 * gap);
+    return above(far, slow_distance(c, at[n - 1])) && !passes_by;
+}
+
 static bool slow_lies_between(int a, int b, struct point in_a, double far)
 {
-    int last = -1;
-    bool nearer = false;
-    for (int k = 0; k < scene.n_keyframes; k++)
-        last = scene.pose[k][a].weight > 0.0f ? k : last;
-    for (int c = 0; c < scene.n_bodies; c++) {
-        if (c == a || c == b || !(scene.pose[last][c].weight > 0.0f))
-            continue;
-        struct point pivot = to_world(placed_of(scene.pose[last][a].pose), in_a);
-        double away = slow_distance(c, to_local(placed_of(scene.pose[last][c].pose), pivot));
-        nearer = above(far, away) || nearer;
-    }
-    return nearer;
+    bool held = false;
+    for (int c = 0; c < scene.n_bodies; c++)
+        held = (c != a && c != b && slow_holds(c, a, in_a, far)) || held;
+    return held;
 }
 
 /* Whether a further body is closer to both than `far` in keyframe k. */

@@ -337,7 +337,7 @@ static struct slow_evidence slow_weigh(int a, int b)
 
 enum { RIGID, REVOLUTE, PRISMATIC, FREE, MOTIONS };
 
-/* Body 2 moves against body 1 as told; body 0 stands aside. */
+/* Body 2 moves against body 1 as told; body 0 stands aside or passes by. */
 static void make_pair(int motion, int n_features, int n_keyframes, double size, double noise)
 {
     n_keyframes = scene_start(n_keyframes);
@@ -346,7 +346,7 @@ static void make_pair(int motion, int n_features, int n_keyframes, double size, 
     (void)scene_add_body(n_features);
     for (int k = 0; k < n_keyframes; k++)
         scene.keyframe[k].at_rest = scene_chance(0.4);
-    scene_wander(0, 0.0, 0.0);
+    scene_wander(0, scene_chance(0.5) ? 0.02 : 0.0, 0.0);
     scene_wander(1, 0.02, scene_chance(0.5) ? 0.2 : 0.0);
     scene.config.pivot_scale_m = (float)scene_uniform(0.05, 0.2);
     scene.config.model_error_m = (float)scene_uniform(0.0001, 0.0003);

@@ -27,6 +27,11 @@
  * than gap_m: odds of 3 million to 1 (exp(30 / 2)) outweigh the prior that a pivot lies on both. */
 #define CERTAIN 30.0f
 
+/* A pivot farther than this from its bodies, in units of gap_m, counts as held by any body nearer:
+ * two ends of a chain may turn about a point that is on neither of them, nor on the links between.
+ */
+#define PASS_BY 1.5f
+
 /* Distance from its bodies, in units of gap_m, that lowers a joint's order by 1: 40 mm, the width
  * of a link. */
 #define ORDER_SCALE 0.4f
@@ -86,20 +91,35 @@ static float gap_between(const struct grrl_perception *p, uint8_t a, uint8_t b, 
     return grrl_sqrt(best2);
 }
 
-/* Whether a third body lies closer to the pivot than `distance` in the last keyframe that saw a. */
+/* Whether a third body holds the pivot: it lies closer than `distance` in the last keyframe that
+ * saw it. One that passes by does not hold it: the pivot does not stay in place there. */
+static bool holds_pivot(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                        uint8_t body, float distance)
+{
+    float gap = p->config.gap_m;
+    float reach = GRRL_PIN_REACH * gap;
+    struct grrl_vec2 first = {0.0f, 0.0f};
+    struct grrl_vec2 at = {0.0f, 0.0f};
+    bool seen = false;
+    bool stays = true;
+    for (uint8_t k = 0; k < p->n_keyframes; k++) {
+        if (!grrl_perception_sees_both(p, k, e->a, body))
+            continue;
+        struct grrl_vec2 world = grrl_to_world(&p->pose[k][e->a], e->fit.in_a);
+        at = grrl_to_local(&p->pose[k][body], world);
+        first = seen ? first : at;
+        seen = true;
+        stays = stays && grrl_vec2_distance2(at, first) < reach * reach;
+    }
+    return seen && (stays || distance > PASS_BY * gap) && distance_to_body(p, body, at) < distance;
+}
+
 static bool lies_between(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
                          float distance)
 {
-    uint8_t k = p->n_keyframes;
-    while (k > 0 && !(p->pose[k - 1][e->a].weight > 0.0f))
-        k--;
-    for (uint8_t c = 0; c < p->n_bodies && k > 0; c++) {
-        const struct grrl_perception_pose *pose = &p->pose[k - 1][c];
-        struct grrl_vec2 pivot = grrl_to_world(&p->pose[k - 1][e->a], e->fit.in_a);
-        if (c != e->a && c != e->b && pose->weight > 0.0f &&
-            distance_to_body(p, c, grrl_to_local(pose, pivot)) < distance)
+    for (uint8_t c = 0; c < p->n_bodies; c++)
+        if (c != e->a && c != e->b && holds_pivot(p, e, c, distance))
             return true;
-    }
     return false;
 }
 

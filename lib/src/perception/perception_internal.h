@@ -307,6 +307,11 @@ struct grrl_joint_evidence {
 bool grrl_joints_weigh(const struct grrl_perception *p, uint8_t a, uint8_t b,
                        struct grrl_joint_evidence *evidence);
 
+/* Pivots closer than this, in units of gap_m (20 mm), are one pin: the width of a link and the
+ * error of a pivot that turned just enough to be detected. On a body that passes by a pivot, the
+ * pivot moves farther than this. */
+#define GRRL_PIN_REACH 0.2f
+
 /* joint_place.c: half the extent of a body's features. */
 float grrl_joint_half_extent(const struct grrl_perception *p, uint8_t body);
 

@@ -29,10 +29,6 @@
  * stay well below FREE_COST_MAX (140), the largest possible gain. */
 #define LOOP_COST 40.0f
 
-/* Pivots closer than this, in units of gap_m (20 mm), are one pin: the width of a link and the
- * error of a pivot that turned just enough to be detected. */
-#define PIN_REACH 0.2f
-
 /* The number of links on the shortest path from a to b over the joints so far; 0: not connected. */
 static unsigned links_between(const uint32_t *joined, uint8_t a, uint8_t b)
 {
@@ -75,7 +71,7 @@ bool grrl_structure_move_as_one(const struct grrl_perception *p, uint8_t a, uint
         bool near_b = grrl_joints_weigh(p, b < c ? b : c, b < c ? c : b, &bc);
         bool both_told = ac.told && bc.told && (near_a || near_b) && ac.type == bc.type;
         if (both_told &&
-            (ac.type == GRRL_REVOLUTE ? is_same_pin(&ac, &bc, PIN_REACH * p->config.gap_m)
+            (ac.type == GRRL_REVOLUTE ? is_same_pin(&ac, &bc, GRRL_PIN_REACH * p->config.gap_m)
                                       : grrl_apart_never_moved(p, a, b)))
             return true;
     }
@@ -161,10 +157,10 @@ static uint8_t choose_structure(const struct grrl_perception *p, struct grrl_joi
     for (int loops = 0; loops < 2; loops++) {
         for (uint16_t i = accepted; i < n && accepted < GRRL_MAX_JOINTS; i++) {
             unsigned links = links_between(joined, e[i].a, e[i].b);
-            bool take = loops == 0
-                            ? links == 0
-                            : links >= 4 && e[i].weight > LOOP_COST &&
-                                  !shares_a_pin(e, accepted, &e[i], PIN_REACH * p->config.gap_m);
+            bool take = loops == 0 ? links == 0
+                                   : links >= 4 && e[i].weight > LOOP_COST &&
+                                         !shares_a_pin(e, accepted, &e[i],
+                                                       GRRL_PIN_REACH * p->config.gap_m);
             if (take) {
                 struct grrl_joint_evidence taken = e[i];
                 joined[taken.a] |= UINT32_C(1) << taken.b;
