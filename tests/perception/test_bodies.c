@@ -14,8 +14,8 @@
 
 static struct grrl_perception copy;
 
-/* --- the plain way
- * -------------------------------------------------------------------------------- */
+/* --- the plain way ------------------------------------------------------------------------------
+ */
 
 static uint16_t features_of(uint8_t body, uint16_t *slots)
 {
@@ -106,23 +106,26 @@ static void split(uint8_t body)
     extend(body, slots, n, score);
 }
 
-/* In pictures a feature at a joint, which moves with both bodies, is enough for the last one. */
-static int least_own(void)
+/* The last one may be at a joint, and in another body: in pictures, and if all others moved far. */
+static int least_own(uint8_t body)
 {
-    return copy.config.static_background ? copy.config.min_features : copy.config.min_features - 1;
+    bool far = true;
+    for (uint8_t b = 0; b < copy.n_bodies; b++)
+        far = far && (b == body || !grrl_apart_is_little(&copy, b, body));
+    return copy.config.min_features - (far || !copy.config.static_background);
 }
 
 static bool is_body(uint8_t body)
 {
     int seen = 0;
-    bool followed = false;
+    int n = count_of(body);
+    bool proven = copy.config.static_background || n >= copy.config.min_features;
     for (int k = 0; k < copy.n_keyframes; k++)
         seen += copy.pose[k][body].weight > 0.0f;
     for (uint16_t i = 0; i < copy.n_slots; i++)
         if (copy.body_of[i] < copy.n_bodies && copy.body_of[i] != body)
-            followed = followed || grrl_assign_follows(&copy, i, body, (uint16_t)(1 + seen / 2));
-    int n = count_of(body);
-    return n >= copy.config.min_features || (followed && n >= least_own());
+            proven = proven || grrl_assign_follows(&copy, i, body, (uint16_t)(1 + seen / 2));
+    return proven && n >= least_own(body);
 }
 
 /* New bodies of features that have none, as long as there are any. */
@@ -135,14 +138,14 @@ static void adopt(void)
     while (found_one) {
         uint16_t n = features_of(GRRL_FEATURE_NONE, slots);
         uint8_t body = copy.n_bodies;
-        if (n < least_own() || body == GRRL_MAX_LINKS)
+        if (n + 1 < copy.config.min_features || body == GRRL_MAX_LINKS)
             return;
         give_all(GRRL_FEATURE_NONE, body);
         fit(body);
         (void)grrl_consensus_misfit(&copy, slots, n, body, score);
         uint16_t found = grrl_consensus_find(&copy, slots, n, score, members);
         give_all(body, GRRL_FEATURE_NONE);
-        for (int i = 0; i < found && found >= least_own(); i++)
+        for (int i = 0; i < found && found + 1 >= copy.config.min_features; i++)
             copy.body_of[members[i]] = body;
         fit(body);
         found_one = is_body(body);
@@ -174,9 +177,9 @@ static void assign_all(void)
 
 static void take_out_small(void)
 {
-    for (uint8_t b = copy.n_bodies; b-- > 0;)
+    for (uint8_t b = 0; b < copy.n_bodies; b++)
         if (!is_body(b))
-            take_out(b);
+            take_out(b--);
 }
 
 /* Two that look like two things at rest, and a third turns against both in one place. */
@@ -251,7 +254,7 @@ static void take_out_redundant(void)
         grrl_assign_find_origins(&copy, &origins);
         for (int i = 0; i < n; i++)
             own += !grrl_assign_fits_elsewhere(&copy, &origins, slots[i], n);
-        if (own < least_own()) {
+        if (own < least_own(b)) {
             take_out(b);
             assign_all();
         } else {
@@ -323,8 +326,8 @@ static void plain_update(void)
     }
 }
 
-/* --- comparison
- * ------------------------------------------------------------------------------------ */
+/* --- comparison ---------------------------------------------------------------------------------
+ */
 
 static void assert_same_bodies(void)
 {
@@ -378,8 +381,8 @@ static void check_update(void)
     assert_publishable();
 }
 
-/* --- scenes
- * ---------------------------------------------------------------------------------------- */
+/* --- scenes -------------------------------------------------------------------------------------
+ */
 
 static uint8_t link_of[GRRL_MAX_FEATURES];
 

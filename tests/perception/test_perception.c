@@ -256,6 +256,50 @@ static void random_chains_are_found(void **state)
     assert_true(wrong * 50 <= states);
 }
 
+/* Leaves each link four to seven features, anywhere on it. */
+static void leave_few_features(void)
+{
+    uint32_t left[WORLD_LINKS];
+    int kept = 0;
+    for (int b = 0; b < world.n_links; b++)
+        left[b] = 4 + grrl_random_below(&world.random, 4);
+    for (int i = 0; i < world.n_points; i++) {
+        int body = world.body[i];
+        if (left[body] == 0)
+            continue;
+        left[body]--;
+        world.body[kept] = body;
+        world.local[kept] = (struct grrl_vec2){world_uniform(&world, -0.063f, 0.063f),
+                                               world_uniform(&world, -0.016f, 0.016f)};
+        world.id[kept++] = i;
+    }
+    world.n_points = kept;
+}
+
+/* One of four features may be at the joint, and fit both links. */
+static void links_of_few_features_are_found(void **state)
+{
+    (void)state;
+    int found = 0;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        struct grrl_perception_config config;
+        grrl_perception_config_default(&config);
+        assert_int_equal(grrl_perception_init(&perception, &config), GRRL_OK);
+        world_init(&world, seed);
+        world_add_chain(&world, "RRR", -0.2f, 0.0f);
+        leave_few_features();
+        world_add_background(&world, 25);
+        world_shuffle_ids(&world);
+        world_rest(&world, &perception, GRRL_SETTLING_FRAMES);
+        assert_int_equal(grrl_perception_update(&perception), GRRL_OK);
+        for (int i = 0; i < 9; i++)
+            move_one(1 + i % 3, world_uniform(&world, i < 3 ? 0.3f : -0.8f, 0.8f));
+        found += is_the_chain(grrl_perception_model(&perception));
+    }
+    print_message("seeds 1 to 100: %d chains\n", found);
+    assert_true(found >= 80);
+}
+
 static void order_and_ids_of_points_do_not_matter(void **state)
 {
     (void)state;
@@ -478,6 +522,7 @@ int main(void)
         cmocka_unit_test(an_outlier_that_passes_does_not_end_a_track),
         cmocka_unit_test(lone_points_off_their_body_are_dropped),
         cmocka_unit_test(random_chains_are_found),
+        cmocka_unit_test(links_of_few_features_are_found),
         cmocka_unit_test(order_and_ids_of_points_do_not_matter),
         cmocka_unit_test(missing_features_are_no_harm),
         cmocka_unit_test(gaps_in_fast_motion_are_no_harm),

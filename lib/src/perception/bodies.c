@@ -129,11 +129,15 @@ static void reassign(struct grrl_perception *p)
         p->is_assigned = !reassign_once(p, &changed);
 }
 
-/* Features that only one body explains, of the min_features that it needs. In pictures a link may
- * have no more than these, and one near a joint counts for both. */
-static uint16_t least_of_its_own(const struct grrl_perception *p)
+/* Features that only one body explains, of the min_features that it needs: one near a joint counts
+ * for both links. In pictures a link may have no more than these; on a table splinters near a joint
+ * may, too, so that this holds only for a body that moved far from every other. */
+static uint16_t least_of_its_own(const struct grrl_perception *p, uint8_t body)
 {
-    return (uint16_t)(p->config.min_features - (grrl_perception_on_table(p) ? 0 : 1));
+    for (uint8_t b = 0; b < p->n_bodies && grrl_perception_on_table(p); b++)
+        if (b != body && grrl_apart_is_little(p, b, body))
+            return p->config.min_features;
+    return (uint16_t)(p->config.min_features - 1);
 }
 
 /* Whether a feature of another body moves with this one, too, in most keyframes. */
@@ -149,10 +153,12 @@ static bool has_follower(const struct grrl_perception *p, uint8_t body)
     return false;
 }
 
-/* Whether n features of its own make a body. */
+/* Whether n features of its own make a body. In pictures points may slide along edges: three that
+ * move alone are no body. */
 static bool are_enough(const struct grrl_perception *p, uint8_t body, uint16_t n)
 {
-    return n >= p->config.min_features || (n >= least_of_its_own(p) && has_follower(p, body));
+    return n >= least_of_its_own(p, body) &&
+           (grrl_perception_on_table(p) || n >= p->config.min_features || has_follower(p, body));
 }
 
 /* Removes bodies with too few features. */
@@ -194,7 +200,7 @@ static void dissolve_redundant(struct grrl_perception *p)
         uint16_t slots[GRRL_MAX_FEATURES];
         struct grrl_assign_origins origins;
         uint16_t n = grrl_rigid_slots(p, b, slots);
-        uint16_t least = least_of_its_own(p);
+        uint16_t least = least_of_its_own(p, b);
         uint16_t unique = 0;
         grrl_assign_find_origins(p, &origins);
         for (uint16_t i = 0; i < n && unique < least; i++)
@@ -311,7 +317,7 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t members[GRRL_MAX_FEATURES];
     float score[GRRL_MAX_KEYFRAMES];
     uint16_t n = grrl_rigid_slots(p, GRRL_FEATURE_NONE, slots);
-    if (n < least_of_its_own(p) || p->n_bodies == GRRL_MAX_LINKS)
+    if (n + 1 < p->config.min_features || p->n_bodies == GRRL_MAX_LINKS)
         return false;
     uint8_t body = p->n_bodies;
     for (uint16_t i = 0; i < n; i++)
@@ -321,7 +327,7 @@ static bool adopt_strays(struct grrl_perception *p)
     uint16_t n_members = grrl_consensus_find(p, slots, n, score, members);
     for (uint16_t i = 0; i < n; i++)
         p->body_of[slots[i]] = GRRL_FEATURE_NONE;
-    if (n_members < least_of_its_own(p))
+    if (n_members + 1 < p->config.min_features)
         return false;
     for (uint16_t i = 0; i < n_members; i++)
         p->body_of[members[i]] = body;
