@@ -97,6 +97,10 @@ static void split(uint8_t body)
     if (n < copy.config.min_features || grrl_consensus_misfit(&copy, slots, n, body, score) < 4.5f)
         return;
     uint16_t found = grrl_consensus_find(&copy, slots, n, score, members);
+    if (found < copy.config.min_features) { /* once more, with those of no body */
+        n = (uint16_t)(n + features_of(GRRL_FEATURE_NONE, slots + n));
+        found = grrl_consensus_find(&copy, slots, n, score, members);
+    }
     if (found < copy.config.min_features || found == n)
         return;
     give_all(body, GRRL_FEATURE_NONE);

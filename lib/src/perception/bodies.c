@@ -288,7 +288,8 @@ static void extend_body(struct grrl_perception *p, uint8_t body, const uint16_t 
     }
 }
 
-/* Splits `body` if part of it moved relative to the rest. */
+/* Splits `body` if part of it moved relative to the rest. If no part moved as one, it may be a few
+ * features of two links whose others are unassigned: then the part is sought among these, too. */
 static void split_body(struct grrl_perception *p, uint8_t body)
 {
     uint16_t slots[GRRL_MAX_FEATURES];
@@ -299,6 +300,10 @@ static void split_body(struct grrl_perception *p, uint8_t body)
         grrl_consensus_misfit(p, slots, n, body, score) < SPLIT_SIGMAS)
         return;
     uint16_t n_members = grrl_consensus_find(p, slots, n, score, members);
+    if (n_members < p->config.min_features) {
+        n = (uint16_t)(n + grrl_rigid_slots(p, GRRL_FEATURE_NONE, slots + n));
+        n_members = grrl_consensus_find(p, slots, n, score, members);
+    }
     if (n_members < p->config.min_features || n_members == n)
         return;
     for (uint16_t i = 0; i < n; i++)
