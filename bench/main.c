@@ -8,7 +8,7 @@
 
 static const struct grrl_program program = {
     .name = "grrl-bench",
-    .usage = "grrl-bench match|retrieve|evict|perceive|push [OPTION]...",
+    .usage = "grrl-bench match|retrieve|evict|perceive|push|rules [OPTION]...",
     .intro = "\n"
              "match     nanoseconds per query for pairs of structures of 4 to 32 links: the "
              "library with\n"
@@ -18,23 +18,24 @@ static const struct grrl_program program = {
              "evict     the share of updates whose experience a full store still has\n"
              "perceive  milliseconds of perception by links, features and keyframes\n"
              "push      what a push of RPRPRPR costs with learn, in instructions if valgrind is\n"
-             "          installed or the processor counts them, and each part next to raw Box2D\n",
+             "          installed or the processor counts them, and each part next to raw Box2D\n"
+             "rules     how many choices of robots that start with the store that comes with grrl\n"
+             "          its rules explain\n",
     .max_arguments = 1,
     .arguments = "give only one measurement",
 };
 
-/* The run of a push links the library with its usual capacities, so it is a program of its own,
- * beside this one. Returns only on failure. */
-static int run_push(bool json)
+/* Runs of agent and simulator link the library with its usual capacities, so they are programs of
+ * their own, beside this one. Returns only on failure. */
+static int run_beside(const char *name, bool json)
 {
     char path[4096];
-    const char name[] = "-push";
-    ssize_t n = readlink("/proc/self/exe", path, sizeof path - sizeof name);
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 16);
     if (n > 0) {
-        memcpy(path + n, name, sizeof name);
+        (void)snprintf(path + n, 16, "-%s", name);
         (void)execl(path, path, json ? "json" : (char *)NULL, (char *)NULL);
-        (void)fprintf(stderr, "grrl-bench: cannot run %s: build the target grrl-bench-push\n",
-                      path);
+        (void)fprintf(stderr, "grrl-bench: cannot run %s: build the target grrl-bench-%s\n", path,
+                      name);
     }
     return 1;
 }
@@ -62,7 +63,8 @@ int main(int argc, char **argv)
         return bench_evict(json);
     if (strcmp(command, "perceive") == 0)
         return bench_perceive(json);
-    if (strcmp(command, "push") == 0)
-        return run_push(json);
-    return grrl_options_wrong(&program, "give one of match, retrieve, evict, perceive or push");
+    if (strcmp(command, "push") == 0 || strcmp(command, "rules") == 0)
+        return run_beside(command, json);
+    return grrl_options_wrong(&program,
+                              "give one of match, retrieve, evict, perceive, push or rules");
 }
