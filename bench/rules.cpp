@@ -129,13 +129,19 @@ void read_rules(const Bytes &store)
     std::vector<grrl_case> cases(8192);
     grrl_case_base base;
     grrl_cases_init(&base, cases.data(), static_cast<uint32_t>(cases.size()));
-    const uint8_t *at = store.data();
+    struct Rest {
+        const uint8_t *from;
+        size_t bytes;
+    } rest{store.data(), store.size()};
     grrl_io io{};
-    io.context = &at;
+    io.context = &rest;
     io.read = [](void *context, void *to, size_t size) {
-        const uint8_t *&from = *static_cast<const uint8_t **>(context);
-        std::copy_n(from, size, static_cast<uint8_t *>(to));
-        from += size;
+        Rest &left = *static_cast<Rest *>(context);
+        if (size > left.bytes)
+            return -1;
+        std::copy_n(left.from, size, static_cast<uint8_t *>(to));
+        left.from += size;
+        left.bytes -= size;
         return 0;
     };
     uint32_t lost = 0;
