@@ -148,14 +148,17 @@ void read_rules(const Bytes &store)
     if (grrl_cases_load(&base, &io, &lost) != GRRL_OK)
         throw std::runtime_error("the store that comes with grrl cannot be read");
     rules.resize(GRRL_MAX_RULES);
-    rules.resize(grrl_rules_of(&base, rules.data()));
+    int n = grrl_rules_of(&base, rules.data());
+    if (n <= 0)
+        throw std::runtime_error("the store that comes with grrl has no rules");
+    rules.resize(static_cast<size_t>(n));
 }
 
 void print(const char *objects, const Count &counted, bool json)
 {
     double n = counted.choices;
     (void)std::printf(json ? "{\"objects\": \"%s\", \"choices\": %d, \"explained\": %.3f, "
-                             "\"chance\": %.3f}\n"
+                             "\"chance\": %.3f}"
                            : "| %s | %d | %.2f | %.2f |\n",
                       objects, counted.choices, counted.explained / n, counted.chance / n);
 }
@@ -173,12 +176,18 @@ int main(int argc, char **)
         if (store.empty())
             throw std::runtime_error(std::string(path) + " cannot be read");
         read_rules(store);
-        if (!json)
+        if (json)
+            (void)std::printf("[{\"rules\": %zu}, ", rules.size());
+        else
             (void)std::printf("%zu rules\n\n| objects | choices | explained | chance |\n"
                               "|---|---|---|---|\n",
                               rules.size());
         print("300 of mixed.stream", over_stream(store), json);
+        if (json)
+            (void)std::printf(", ");
         print("11 named ones", over_named(store), json);
+        if (json)
+            (void)std::puts("]");
     } catch (const std::exception &error) {
         (void)std::fprintf(stderr, "grrl-bench: %s\n", error.what());
         return 1;

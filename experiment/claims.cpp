@@ -14,7 +14,7 @@ namespace
 
 constexpr int judged_trials = 10;
 
-/* The curves of one object and world without pretraining, by what they are. */
+/* The curves of one object and world that start with an empty memory, by what they are. */
 struct Row {
     std::string object;
     int trials;
@@ -30,7 +30,7 @@ std::vector<Row> rows_of(const Plan &plan, const std::vector<Experiments> &resul
     std::vector<Row> rows;
     for (size_t c = 0; c < plan.curves.size(); c++) {
         const Curve &curve = plan.curves[c];
-        if (!curve.before.empty())
+        if (!curve.starts_empty())
             continue;
         if (rows.empty() || rows.back().object != curve.object())
             rows.push_back({curve.object(), curve.trials(), {}, {}, {}, {}, {}});

@@ -67,6 +67,12 @@ const char *take_object(void *context, const char *value)
     return nullptr;
 }
 
+const char *take_start(void *context, const char *value)
+{
+    *static_cast<std::string *>(context) = value;
+    return *value == '\0' ? "a store that grrl-agent --store wrote, or mixed" : nullptr;
+}
+
 const char *take_pretrain(void *context, const char *value)
 {
     std::string object;
@@ -306,10 +312,10 @@ grrl_options_result parse_options(int argc, char **argv, Options &options)
                          "with --object: compare with pretraining, N trials on another one;\n"
                          "several add up, in their order",
                          take_pretrain, &o.pretrain),
-        grrl_option_text("start", "FILE",
+        grrl_option_call("start", "FILE",
                          "learners start with this store, not with an empty memory; mixed: the\n"
                          "one that comes with grrl",
-                         &o.start),
+                         take_start, &o.start),
         grrl_option_each("stream", "FILE[:N]", "as --object FILE, or as --pretrain FILE:N",
                          take_stream, &o),
         grrl_option_each("then", "OBJECT", "after --stream FILE:N: as --object", take_object,

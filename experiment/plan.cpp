@@ -114,6 +114,8 @@ std::string read_start(Plan &plan, const std::string &store)
         curve.start = store;
         curve.experience = bytes;
     }
+    if (objections.empty())
+        return "--start: none of the policies learns";
     return {};
 }
 

@@ -38,6 +38,7 @@ struct Curve {
     std::vector<Course> before;              /* one after the other; empty: none */
     Conditions conditions;                   /* of all its courses */
 
+    bool starts_empty() const { return start.empty() && before.empty(); }
     std::string object() const; /* RPRPRPR, or RPRPRPR in links=0.7 */
     int trials() const { return course.trials; }
     int all_trials() const;            /* with those before */

@@ -113,7 +113,7 @@ std::string curve_label(const Curve &curve, bool with_object)
 {
     std::string label = with_object ? curve.object() + " " : "";
     label += curve.policy->name;
-    if (curve.pretrain_text() != "none")
+    if (!curve.starts_empty())
         label += " after " + curve.pretrain_text();
     return label;
 }

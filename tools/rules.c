@@ -134,16 +134,16 @@ static int by_mean(const void *a, const void *b)
     return (of_x < of_y) - (of_x > of_y);
 }
 
-unsigned grrl_rules_of(const struct grrl_case_base *base, struct grrl_rule rules[GRRL_MAX_RULES])
+int grrl_rules_of(const struct grrl_case_base *base, struct grrl_rule rules[GRRL_MAX_RULES])
 {
-    struct points points = {calloc(base->n > 0 ? base->n : 1, sizeof *points.point), base->n};
     struct grrl_case_config config;
     double pushes = 0.0;
     grrl_case_config_default(&config);
-    if (points.point == NULL || base->n == 0) {
-        free(points.point);
+    if (base->n == 0)
         return 0;
-    }
+    struct points points = {calloc(base->n, sizeof *points.point), base->n};
+    if (points.point == NULL)
+        return -1;
     for (uint32_t i = 0; i < base->n; i++) {
         struct grrl_estimate estimate;
         grrl_cases_estimate(base, &config, base->cases[i].key, &estimate);
@@ -156,5 +156,5 @@ unsigned grrl_rules_of(const struct grrl_case_base *base, struct grrl_rule rules
     for (unsigned i = 0; i < n; i++)
         add_up(base, &rules[i]);
     qsort(rules, n, sizeof rules[0], by_mean);
-    return n;
+    return (int)n;
 }

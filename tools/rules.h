@@ -26,9 +26,9 @@ struct grrl_rule {
 /* Whether the context with this key falls under a rule. */
 bool grrl_rule_holds(const struct grrl_rule *rule, uint32_t key);
 
-/* Finds the rules, the one with the highest mean reward first. Returns how many; each context falls
- * under one of them. */
-unsigned grrl_rules_of(const struct grrl_case_base *base, struct grrl_rule rules[GRRL_MAX_RULES]);
+/* Finds the rules, the one with the highest mean reward first; each context falls under one of
+ * them. Returns how many, 0 without cases, or -1 without memory. */
+int grrl_rules_of(const struct grrl_case_base *base, struct grrl_rule rules[GRRL_MAX_RULES]);
 
 GRRL_API_END
 

@@ -60,33 +60,20 @@ static void print_rule(const struct grrl_rule *rule)
     putchar('\n');
 }
 
-/* The square of the sum over the number: what a mean explains of a sum of squares. */
-static double explained(double reward, double pushes)
-{
-    return pushes > 0.0 ? reward * reward / pushes : 0.0;
-}
-
-void term_rules_print(const struct grrl_case_base *base)
+bool term_rules_print(const struct grrl_case_base *base)
 {
     struct grrl_rule rules[GRRL_MAX_RULES];
-    unsigned n = grrl_rules_of(base, rules);
-    double by_rules = 0.0;
-    double by_cases = 0.0;
+    int n = grrl_rules_of(base, rules);
     double pushes = 0.0;
-    double reward = 0.0;
-    for (uint32_t i = 0; i < base->n; i++)
-        by_cases += (double)base->cases[i].n_all * (double)base->cases[i].value_all *
-                    (double)base->cases[i].value_all;
-    puts("found something  reward  push");
-    for (unsigned i = 0; i < n; i++) {
-        print_rule(&rules[i]);
-        by_rules += explained(rules[i].reward, rules[i].pushes);
-        pushes += rules[i].pushes;
-        reward += rules[i].reward;
+    if (n < 0) {
+        fputs("grrl-term: no memory for the cases\n", stderr);
+        return false;
     }
-    double by_none = explained(reward, pushes);
-    printf("%u rules for %u cases of %.0f pushes; of what differs between the cases they explain "
-           "%.0f%%\n",
-           n, (unsigned)base->n, pushes,
-           by_cases > by_none ? 100.0 * (by_rules - by_none) / (by_cases - by_none) : 100.0);
+    puts("found something  reward  push");
+    for (int i = 0; i < n; i++) {
+        print_rule(&rules[i]);
+        pushes += rules[i].pushes;
+    }
+    printf("%d rules for %u cases of %.0f pushes\n", n, (unsigned)base->n, pushes);
+    return true;
 }

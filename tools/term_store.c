@@ -47,8 +47,7 @@ bool term_store_rules(const char *path)
     grrl_cases_init(&base, cases, MAX_CASES);
     if (!load(path, &base))
         return false;
-    term_rules_print(&base);
-    return true;
+    return term_rules_print(&base);
 }
 
 static bool save(const char *path, const struct grrl_case_base *base)

@@ -11,7 +11,7 @@ bool term_store_rules(const char *path);
 /* Merges n >= 2 stores, one after another. */
 bool term_store_merge(char *const *paths, int n, const char *out);
 
-/* Prints the cases as rules, the best first. */
-void term_rules_print(const struct grrl_case_base *base);
+/* Prints the cases as rules, the best first. False without memory, which is printed. */
+bool term_rules_print(const struct grrl_case_base *base);
 
 #endif

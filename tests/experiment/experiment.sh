@@ -152,6 +152,10 @@ start) # learners start with a store
     refused 'paper cannot start with .*mixed.store: a file from another policy' \
         --object PR --out x --start mixed --policy learn,paper
     refused '--start: no.store cannot be read' --object PR --out x --start no.store
+    refused '--start : must be a store' --object PR --out x --start ''
+    refused '--start: none of the policies learns' --object PR --out x --start mixed --policy random
+    run none --object PR --policy "random,rules,learn" --trials 1 --experiments 2 --start mixed
+    [ ! -e none/claims.txt ] || fail "robots with a store are compared as if they had none"
     head -c 200 "$store" >torn.store
     refused 'cannot start with torn.store: it ends early' \
         --object PR --out x --start torn.store

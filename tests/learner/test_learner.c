@@ -251,10 +251,10 @@ static void a_decision_by_cases_tells_why(void **state)
     assert_int_equal(decision.choice.source.kind, GRRL_SOURCE_CASES);
     assert_int_equal(decision.choice.source.index, 0);
     assert_int_equal(decision.choice.source.distance, 0);
-    /* one reward of 2, of another trial, over what all objects have in common: the same reward and
-     * a prior of 0.5, each of weight 1 */
+    /* one reward of 2, of another trial, over a prior of 0.5 of weight 1; no other object is known
+     */
     float trust = 1.0f / (1.0f + grrl_exp(-one.policy.learn.config.confidence));
-    float value = (0.5f + 2.0f + trust * 2.0f) / (2.0f + trust);
+    float value = (0.5f + trust * 2.0f) / (1.0f + trust);
     assert_true(fabsf(decision.choice.value - value) < 1e-5f);
     assert_true(decision.choice.lower < value && decision.choice.upper > value);
     start(learner);

@@ -110,13 +110,18 @@ static void split(uint8_t body)
     extend(body, slots, n, score);
 }
 
-/* The last one may be at a joint, and in another body: in pictures, and if all others moved far. */
+/* One less is enough in pictures, and if there are others and all moved far; but never two. */
 static int least_own(uint8_t body)
 {
-    bool far = true;
-    for (uint8_t b = 0; b < copy.n_bodies; b++)
-        far = far && (b == body || !grrl_apart_is_little(&copy, b, body));
-    return copy.config.min_features - (far || !copy.config.static_background);
+    int others = 0;
+    int far = 0;
+    for (uint8_t b = 0; b < copy.n_bodies; b++) {
+        others += b != body;
+        far += b != body && !grrl_apart_is_little(&copy, b, body);
+    }
+    bool lower = copy.config.static_background ? others > 0 && far == others : true;
+    return lower && copy.config.min_features > 3 ? copy.config.min_features - 1
+                                                 : copy.config.min_features;
 }
 
 static bool is_body(uint8_t body)

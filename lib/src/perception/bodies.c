@@ -130,14 +130,21 @@ static void reassign(struct grrl_perception *p)
 }
 
 /* Features that only one body explains, of the min_features that it needs: one near a joint counts
- * for both links. In pictures a link may have no more than these; on a table splinters near a joint
- * may, too, so that this holds only for a body that moved far from every other. */
+ * for both links. In pictures a link may have no more than these. On a table, splinters near a
+ * joint have so few, too; there the lower limit holds only for a body that moved far from every
+ * other. */
 static uint16_t least_of_its_own(const struct grrl_perception *p, uint8_t body)
 {
-    for (uint8_t b = 0; b < p->n_bodies && grrl_perception_on_table(p); b++)
-        if (b != body && grrl_apart_is_little(p, b, body))
+    bool table = grrl_perception_on_table(p);
+    bool lower = !table;
+    for (uint8_t b = 0; b < p->n_bodies && table; b++) {
+        if (b == body)
+            continue;
+        if (grrl_apart_is_little(p, b, body))
             return p->config.min_features;
-    return (uint16_t)(p->config.min_features - 1);
+        lower = true;
+    }
+    return (uint16_t)(p->config.min_features - (lower && p->config.min_features > 3 ? 1 : 0));
 }
 
 /* Whether a feature of another body moves with this one, too, in most keyframes. */

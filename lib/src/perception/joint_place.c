@@ -27,10 +27,10 @@
  * than gap_m: odds of 3 million to 1 (exp(30 / 2)) outweigh the prior that a pivot lies on both. */
 #define CERTAIN 30.0f
 
-/* A pivot farther than this from its bodies, in units of gap_m, counts as held by any body nearer:
- * two ends of a chain may turn about a point that is on neither of them, nor on the links between.
- */
-#define PASS_BY 1.5f
+/* If a pivot is farther than this from its bodies, in units of gap_m, any nearer body counts as
+ * holding it: two ends of a chain may turn about a point that is on neither of them, nor on the
+ * links between. */
+#define FAR_PIVOT 1.5f
 
 /* Distance from its bodies, in units of gap_m, that lowers a joint's order by 1: 40 mm, the width
  * of a link. */
@@ -111,11 +111,13 @@ static bool holds_pivot(const struct grrl_perception *p, const struct grrl_joint
         seen = true;
         stays = stays && grrl_vec2_distance2(at, first) < reach * reach;
     }
-    return seen && (stays || distance > PASS_BY * gap) && distance_to_body(p, body, at) < distance;
+    return seen && (stays || distance > FAR_PIVOT * gap) &&
+           distance_to_body(p, body, at) < distance;
 }
 
-static bool lies_between(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
-                         float distance)
+/* Whether any third body holds the pivot. */
+static bool is_held_by_third(const struct grrl_perception *p, const struct grrl_joint_evidence *e,
+                             float distance)
 {
     for (uint8_t c = 0; c < p->n_bodies; c++)
         if (c != e->a && c != e->b && holds_pivot(p, e, c, distance))
@@ -141,7 +143,7 @@ static bool is_pivot_near(const struct grrl_perception *p, const struct grrl_joi
     if (!(da < gap + share * grrl_joint_half_extent(p, e->a)) ||
         !(db < gap + share * grrl_joint_half_extent(p, e->b)))
         return false;
-    return !table || (support > CERTAIN && !lies_between(p, e, da > db ? da : db));
+    return !table || (support > CERTAIN && !is_held_by_third(p, e, da > db ? da : db));
 }
 
 /* Whether a third body lies closer to both than they are to each other in keyframe k. */

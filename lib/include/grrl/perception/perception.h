@@ -52,9 +52,9 @@ struct grrl_perception_config {
     float gap_m;         /* joined bodies stay this close, three of their features; 0.1 */
     float slack; /* factor on the thresholds for splitting a body, >= 1; 1. Camera images are not an
                     exact plane: 5 */
-    uint8_t min_features; /* fewer features do not make a body; 4. One of them may be in another
-                             body: with static_background if this one moved far from all others,
-                             else if it moves with both */
+    uint8_t min_features; /* fewer features do not make a body, >= 3; 4. One less is enough for a
+                             body that moved far from every other, or, without static_background,
+                             if one of another body moves with both */
     uint8_t push_frames;  /* averaged into a keyframe of a push, 0: 3. Use 1 if points move farther
                              than keyframe_m from frame to frame, or if tracks are short */
     bool static_background; /* sparse points that never move are background; true. false: any

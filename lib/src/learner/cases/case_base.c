@@ -82,6 +82,16 @@ static void set_weights(float mismatch, float weight_of[GRRL_CONTEXT_PARTS + 1])
         weight_of[i] = weight_of[i - 1] * mismatch;
 }
 
+/* How many of a case's rewards ever are of other objects than the one at hand: this one has as
+ * large a share in them as in those remembered. */
+static unsigned rewards_of_others(const struct grrl_case_config *config,
+                                  const struct grrl_case *met)
+{
+    unsigned remembered = at_most(met->n_all, config->memory);
+    unsigned own = (unsigned)met->n + met->n_new;
+    return own < remembered ? met->n_all * (remembered - own) / remembered : 0u;
+}
+
 /* Sums the evidence for one context, and finds the closest case for the estimate. */
 static void gather_evidence(const struct grrl_case_base *base,
                             const struct grrl_case_config *config, uint32_t key,
@@ -98,7 +108,7 @@ static void gather_evidence(const struct grrl_case_base *base,
     for (uint32_t i = 0; i < base->n; i++) {
         const struct grrl_case *met = &base->cases[i];
         unsigned mismatches = grrl_context_differences(met->key, key, bits);
-        float all = general_of[mismatches] * (float)met->n_all;
+        float all = general_of[mismatches] * (float)rewards_of_others(config, met);
         float older = weight_of[mismatches] * (float)at_most(met->n, config->memory);
         evidence->all += all;
         evidence->all_sum += all * met->value_all;

@@ -15,9 +15,10 @@
  * the weight of older rewards and raises that trial's, in proportion to P(object changed). Old
  * cases keep one reward, so that they still count where nothing else is known.
  *
- * What all objects so far have in common outlives doubt. Each case also keeps the mean of all its
- * rewards, and the mean of these over all cases, with a narrower kernel, is the prior of the object
- * at hand. Its weight is limited, so a few rewards of this object outweigh it.
+ * What all other objects so far have in common outlives doubt. Each case also keeps the mean of all
+ * its rewards, and the mean of these over all cases, with a narrower kernel, is the prior of the
+ * object at hand. A case counts there by the share of its rewards that are of other objects. The
+ * weight of the prior is limited, so a few rewards of this object outweigh it.
  *
  * The memory is fixed and belongs to the caller. When it is full, the case that was met least
  * recently is evicted.
@@ -39,7 +40,7 @@ struct grrl_case_config {
     float prior;            /* expected reward where nothing was met; 0.5 */
     float prior_weight;     /* weight of the prior, in rewards, > 0; 1 */
     float mismatch;         /* factor on a case's weight for each part that differs, [0, 1]; 0.2 */
-    float general;          /* highest weight of all rewards as the object's prior, >= 0; 3 */
+    float general;          /* highest weight of other objects as the prior, >= 0; 3 */
     float general_mismatch; /* as mismatch, in that prior, [0, 1]; 0.1 */
     float bound;            /* upper bound = estimate + bound / sqrt(weight), >= 0; 0.4 */
     float confidence; /* initial and highest log odds that the object is as known, >= 0; 0.5 */
