@@ -14,7 +14,7 @@
 GRRL_API_BEGIN
 
 /* More rules explain fewer choices of the learner: leaves as good as each other compete. */
-enum { GRRL_MAX_RULES = 5 };
+enum { GRRL_MAX_RULES = 4 };
 
 struct grrl_rule {
     uint8_t values[GRRL_CONTEXT_PARTS]; /* that each part may have, as bits */
