@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -17,6 +18,9 @@ namespace grrl_experiment
 
 namespace
 {
+
+constexpr int lock_wait_ms = 5000;
+constexpr int lock_poll_ms = 100;
 
 /* FNV-1a. */
 std::string hash_of(const std::string &bytes)
@@ -74,9 +78,13 @@ void Folder::lock()
     lock_fd_ = open(path("lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
     if (lock_fd_ < 0)
         throw std::runtime_error("cannot write " + path("lock"));
-    if (flock(lock_fd_, LOCK_EX | LOCK_NB) != 0) {
-        (void)close(lock_fd_);
-        throw std::runtime_error("another grrl-experiment is using " + root_);
+    /* a run that was killed leaves its workers for a moment */
+    for (int waited_ms = 0; flock(lock_fd_, LOCK_EX | LOCK_NB) != 0; waited_ms += lock_poll_ms) {
+        if (waited_ms >= lock_wait_ms) {
+            (void)close(lock_fd_);
+            throw std::runtime_error("another grrl-experiment is using " + root_);
+        }
+        (void)poll(nullptr, 0, lock_poll_ms);
     }
 }
 
