@@ -30,9 +30,10 @@ static const struct grrl_program program = {
 static int run_beside(const char *name, bool json)
 {
     char path[4096];
-    ssize_t n = readlink("/proc/self/exe", path, sizeof path - 16);
+    size_t most = strlen(name) + sizeof "-";
+    ssize_t n = readlink("/proc/self/exe", path, sizeof path - most);
     if (n > 0) {
-        (void)snprintf(path + n, 16, "-%s", name);
+        (void)snprintf(path + n, most, "-%s", name);
         (void)execl(path, path, json ? "json" : (char *)NULL, (char *)NULL);
         (void)fprintf(stderr, "grrl-bench: cannot run %s: build the target grrl-bench-%s\n", path,
                       name);

@@ -7,15 +7,14 @@
  * state. Chance is the share of pushes under that rule.
  */
 #include <algorithm>
+#include <cassert>
 #include <climits>
 #include <cstdio>
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "files.hpp"
 #include "grrl/learner/cases/learn_policy.h"
 #include "grrl/policies.h"
 #include "object.hpp"
@@ -55,12 +54,13 @@ struct Count {
 };
 Count count;
 
+/* Each context falls under one rule. */
 size_t rule_of(uint32_t key)
 {
-    for (size_t i = 0; i < rules.size(); i++)
-        if (grrl_rule_holds(&rules[i], key))
-            return i;
-    throw std::logic_error("a push falls under no rule");
+    auto rule = std::find_if(rules.begin(), rules.end(),
+                             [key](const grrl_rule &r) { return grrl_rule_holds(&r, key); });
+    assert(rule != rules.end());
+    return static_cast<size_t>(rule - rules.begin());
 }
 
 void count_choice(const grrl_contexts &contexts, const grrl_choice &choice)
@@ -81,10 +81,17 @@ void count_choice(const grrl_contexts &contexts, const grrl_choice &choice)
     count.chance += static_cast<double>(under) / pushes;
 }
 
+/* The first robot's cases, at its first choice, are those of the store. */
 void choose(void *self, const grrl_view *view, grrl_random *random, grrl_choice *choice)
 {
+    grrl_learn_policy *policy = static_cast<grrl_learn_policy *>(self);
+    if (rules.empty()) {
+        rules.resize(GRRL_MAX_RULES);
+        rules.resize(static_cast<size_t>(std::max(0, grrl_rules_of(&policy->cases, rules.data()))));
+    }
     grrl_policy_learn.choose(self, view, random, choice);
-    count_choice(static_cast<grrl_learn_policy *>(self)->contexts, *choice);
+    if (!rules.empty())
+        count_choice(policy->contexts, *choice);
 }
 
 /* A robot's life; its choices are counted. */
@@ -124,36 +131,6 @@ Count over_named(const Bytes &store)
     return count;
 }
 
-void read_rules(const Bytes &store)
-{
-    std::vector<grrl_case> cases(8192);
-    grrl_case_base base;
-    grrl_cases_init(&base, cases.data(), static_cast<uint32_t>(cases.size()));
-    struct Rest {
-        const uint8_t *from;
-        size_t bytes;
-    } rest{store.data(), store.size()};
-    grrl_io io{};
-    io.context = &rest;
-    io.read = [](void *context, void *to, size_t size) {
-        Rest &left = *static_cast<Rest *>(context);
-        if (size > left.bytes)
-            return -1;
-        std::copy_n(left.from, size, static_cast<uint8_t *>(to));
-        left.from += size;
-        left.bytes -= size;
-        return 0;
-    };
-    uint32_t lost = 0;
-    if (grrl_cases_load(&base, &io, &lost) != GRRL_OK)
-        throw std::runtime_error("the store that comes with grrl cannot be read");
-    rules.resize(GRRL_MAX_RULES);
-    int n = grrl_rules_of(&base, rules.data());
-    if (n <= 0)
-        throw std::runtime_error("the store that comes with grrl has no rules");
-    rules.resize(static_cast<size_t>(n));
-}
-
 void print(const char *objects, const Count &counted, bool json)
 {
     double n = counted.choices;
@@ -171,18 +148,20 @@ int main(int argc, char **)
     try {
         char path[PATH_MAX];
         grrl_shipped_store_path("mixed", sizeof path, path);
-        std::ifstream file(path, std::ios::binary);
-        const Bytes store{std::istreambuf_iterator<char>(file), {}};
-        if (store.empty())
+        const std::optional<std::string> text = grrl_experiment::read_file(path);
+        if (!text)
             throw std::runtime_error(std::string(path) + " cannot be read");
-        read_rules(store);
+        const Bytes store(text->begin(), text->end());
+        const Count on_stream = over_stream(store);
+        if (rules.empty())
+            throw std::runtime_error(std::string(path) + " has no cases to make rules of");
         if (json)
             (void)std::printf("[{\"rules\": %zu}, ", rules.size());
         else
             (void)std::printf("%zu rules\n\n| objects | choices | explained | chance |\n"
                               "|---|---|---|---|\n",
                               rules.size());
-        print("300 of mixed.stream", over_stream(store), json);
+        print("300 of mixed.stream", on_stream, json);
         if (json)
             (void)std::printf(", ");
         print("11 named ones", over_named(store), json);

@@ -67,7 +67,8 @@ grrl_status load(grrl_learner &learner, const Bytes &experience)
     grrl_io io{};
     io.context = &reader;
     io.read = read_bytes;
-    return grrl_learner_load(&learner, &io);
+    grrl_status status = grrl_learner_load(&learner, &io);
+    return status == GRRL_OK && reader.at < experience.size() ? GRRL_ERR_FORMAT : status;
 }
 
 } // namespace

@@ -156,6 +156,9 @@ start) # learners start with a store
     refused '--start: none of the policies learns' --object PR --out x --start mixed --policy random
     run none --object PR --policy "random,rules,learn" --trials 1 --experiments 2 --start mixed
     [ ! -e none/claims.txt ] || fail "robots with a store are compared as if they had none"
+    cat "$store" "$store" >long.store
+    refused 'cannot start with long.store: not a file of this kind' \
+        --object PR --out x --start long.store
     head -c 200 "$store" >torn.store
     refused 'cannot start with torn.store: it ends early' \
         --object PR --out x --start torn.store

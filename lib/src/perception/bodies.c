@@ -164,8 +164,8 @@ static bool has_follower(const struct grrl_perception *p, uint8_t body)
  * move alone are no body. */
 static bool are_enough(const struct grrl_perception *p, uint8_t body, uint16_t n)
 {
-    return n >= least_of_its_own(p, body) &&
-           (grrl_perception_on_table(p) || n >= p->config.min_features || has_follower(p, body));
+    return n >= p->config.min_features || (n >= least_of_its_own(p, body) &&
+                                           (grrl_perception_on_table(p) || has_follower(p, body)));
 }
 
 /* Removes bodies with too few features. */
@@ -207,13 +207,12 @@ static void dissolve_redundant(struct grrl_perception *p)
         uint16_t slots[GRRL_MAX_FEATURES];
         struct grrl_assign_origins origins;
         uint16_t n = grrl_rigid_slots(p, b, slots);
-        uint16_t least = least_of_its_own(p, b);
         uint16_t unique = 0;
         grrl_assign_find_origins(p, &origins);
-        for (uint16_t i = 0; i < n && unique < least; i++)
+        for (uint16_t i = 0; i < n && unique < p->config.min_features; i++)
             unique =
                 (uint16_t)(unique + (grrl_assign_fits_elsewhere(p, &origins, slots[i], n) ? 0 : 1));
-        if (unique < least) {
+        if (unique < p->config.min_features && unique < least_of_its_own(p, b)) {
             for (uint16_t i = 0; i < n; i++)
                 p->body_of[slots[i]] = GRRL_FEATURE_NONE;
             remove_body(p, b--);
